@@ -2,7 +2,7 @@
 #pragma once
 // How benchmarks time a device, and the floor for comparison.
 
-#include <clearance/backend/cuda_error.cuh>
+#include <clearance/backends/cuda_error.cuh>
 
 #include <cstddef>
 

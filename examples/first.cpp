@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance.hpp>

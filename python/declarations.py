@@ -13,7 +13,7 @@ import sys
 
 STRUCT = re.compile(r"(struct|enum class) (\w+)(?: : ([\w:]+))? \{(.*)")
 MEMBER = re.compile(r"  (unsigned long long|[\w:]+(?:<.*>)?) (\w[^()]*?(?:\{.*\})?[^()]*?);(?: +///< (.*))?$")
-METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const \{")
+METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) const&? \{")
 # What has a class of its own in values.hpp, not one made from its members.
 OWN = {"vec3", "position", "distance_certainty"}
 # Options that no question has: `uncertain` takes them.
@@ -123,6 +123,8 @@ def words(text):
 
 
 def quoted(text):
+    for ours, pythons in (("std::invalid_argument", "ValueError"), ("std::out_of_range", "IndexError"), ("Throws", "Raises")):
+        text = text.replace(ours, pythons)
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("`", "") + '"'
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Sourced by the other scripts: paths, and what must be installed. POSIX shell.
 
-root=$(cd "$(dirname "$0")/.." && pwd)
+root=$(cd "$(dirname "$0")" && while [ ! -f scripts/lib.sh ] && [ "$PWD" != / ]; do cd ..; done && pwd)
 
 # What each part needs on a bare Debian 12; each list contains the one before. README.md lists the same. Ubuntu 24.04
 # uses the same names (untested there).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was recorded, for the scripts that put its numbers into the documentation. Needs nothing but Python."""
+"""Reads bench/records, for the scripts that put its numbers into pages. Needs nothing but Python."""
 
 import collections
 import csv
@@ -10,6 +10,7 @@ import re
 import sys
 
 root = pathlib.Path(__file__).resolve().parent.parent
+records = root / "bench/records"
 scenes = ("table", "room")
 
 
@@ -97,160 +98,94 @@ class Paper:
         return [above[cloud] / below[cloud] for cloud in above]
 
 
-def paper_claims(paper):
-    """The numbers behind the paper's claims: a row for each claim, a column for each cloud, and the range over all clouds."""
-    clouds = ()
-
-    def number(value):
-        return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
-
-    def digits(value):
-        return f"{value:.0f}" if value >= 10 else f"{value:.1g}"
-
-    def line(name, cell, width=16, last=""):
-        def at(scene, points):
-            try:
-                return cell(lambda axis, variant, metric="us": paper.points_of[axis, scene, metric][variant][points])
-            except KeyError:  # not measured: no OctoMap, say
-                return "-"
-
-        return f"{name:<48}" + "".join(f"{at(scene, points):>{width}}" for scene, points in clouds) + f"{last:>20}".rstrip() + "\n"
-
-    def heading(width=16, last=""):
-        titles = "".join(f"{scene + ' ' + thousands(points):>{width}}" for scene, points in clouds)
-        return f"{'':<48}{titles}" + f"{last:>20}".rstrip() + "\n"
-
-    def measured(*variants):
-        """Whether a run has them: an older one does not have all."""
-        return all((axis, s, "us") in paper.points_of and variant in paper.points_of[axis, s, "us"] for axis, variant in variants for s in scenes)
-
-    def microseconds(name, axis, variant):
-        if not measured((axis, variant)):
-            return ""
-        return line(name, lambda t: number(t(axis, variant)), 16, span(paper.values(axis, variant).values(), number))
-
-    def times(name, axis, over, under, under_axis=None):
-        if not measured((axis, over), (under_axis or axis, under)):
-            return ""
-        all_clouds = span(paper.ratios(axis, over, under, under_axis=under_axis), factor) + " x"
-        return line(name, lambda t: factor(t(axis, over) / t(under_axis or axis, under)) + " x", 16, all_clouds)
-
-    ours, papers = "GPU ours, ", "GPU the paper's, "
-    cores = next(iter(paper.points_of["competitors", "table", "threads"].get("CPU ours (all threads)", {0: 16}).values()))
-    clouds = (("table", 307200), ("table", 1000000), ("room", 307200), ("room", 5000000))
-    claims = [
-        heading(16, "all clouds"),
-        "microseconds, points resident, CUDA events\n",
-        microseconds("  the paper's kernels", "transfer", "the paper's kernels"),
-        microseconds("  ours, cold", "transfer", "our kernel, cold"),
-        microseconds("  ours, warm", "transfer", "our kernel, warm"),
-        "microseconds, points on the host, until the answer is there, host clock\n",
-        microseconds("  copying alone, pinned memory", "transfer", "copy from pinned memory"),
-        microseconds("  the paper's, pinned", "competitors", papers + "pinned"),
-        microseconds("  ours, pinned", "competitors", ours + "pinned"),
-        microseconds("  the paper's, pageable", "competitors", papers + "pageable"),
-        microseconds("  ours, pageable", "competitors", ours + "pageable"),
-        microseconds("  octree, then GPU (octree given)", "competitors", "octree + GPU"),
-        microseconds("  CPU octree, query", "competitors", "CPU octree query"),
-        microseconds("  CPU octree, construction", "competitors", "CPU octree construction"),
-        microseconds("  CPU octree, construction and query", "competitors", "CPU octree construction and query"),
-        microseconds("  CPU, the paper's Algorithm 1, one thread", "competitors", "CPU Algorithm 1 (1 thread)"),
-        microseconds("  CPU, the same, SIMD, eight points", "competitors", "CPU SIMD, eight points (1 thread)"),
-        microseconds("  CPU, the same, SIMD, eight children", "competitors", "CPU SIMD, eight children (1 thread)"),
-        microseconds("  CPU, the same, SIMD, points, then children", "competitors", "CPU SIMD, both (1 thread)"),
-        microseconds("  CPU, ours, one thread", "competitors", "CPU ours (1 thread)"),
-        microseconds(f"  CPU, SIMD, eight points, all {cores:.0f} processors", "competitors", "CPU SIMD, eight points (all threads)"),
-        microseconds(f"  CPU, SIMD, eight children, all {cores:.0f}", "competitors", "CPU SIMD, eight children (all threads)"),
-        microseconds(f"  CPU, SIMD, points, then children, all {cores:.0f}", "competitors", "CPU SIMD, both (all threads)"),
-        microseconds(f"  CPU, ours, all {cores:.0f} processors", "competitors", "CPU ours (all threads)"),
-        *([] if not measured(("competitors", "CPU SIMD, both (1 thread)")) else [
-            "CPU over the paper's kernels, points resident: times as long\n",
-            *(times("  " + name, "competitors", variant, "the paper's kernels", "transfer") for name, variant in (
-                ("Algorithm 1 as compiled, one thread", "CPU Algorithm 1 (1 thread)"),
-                ("SIMD, eight points, one thread", "CPU SIMD, eight points (1 thread)"),
-                ("SIMD, points, then children, one thread", "CPU SIMD, both (1 thread)"),
-                (f"SIMD, points, then children, all {cores:.0f}", "CPU SIMD, both (all threads)"),
-                ("ours, one thread", "CPU ours (1 thread)"),
-                (f"ours, all {cores:.0f} processors", "CPU ours (all threads)"))),
-        ]),
-        "the paper's kernels, one axis changed: times as long as its own choice\n",
-        times("  stack instead of recursion", "traversal", "stack", "recursive"),
-        times("  near child first instead of recursion", "traversal", "near first", "recursive"),
-        times("  eight lanes per point instead of recursion", "traversal", "cooperative", "recursive"),
-        times("  parts in sequence instead of streams", "schedule", "recursive; sequential", "recursive; streams"),
-        times("  parts fused instead of streams", "schedule", "recursive; fused", "recursive; streams"),
-        times("  a grid of parts x points instead of streams", "schedule", "recursive; grid", "recursive; streams"),
-        times("  trees moved beforehand instead of points", "transform", "trees beforehand", "points into parts"),
-        times("  volumes moved in the walk instead of points", "transform", "volumes in the walk", "points into parts"),
-        times("  balls around parts first, then points", "transform", "survivors into parts", "points into parts"),
-        times("  bound shared by a block instead of by all", "sharing", "recursive; block", "recursive; all"),
-        times("  the same, as few threads as a GTX 780 holds", "sharing", "recursive; block; few threads", "recursive; all; few threads"),
-        times("  bound shared by nobody instead of by all", "sharing", "recursive; nobody", "recursive; all"),
-        times("  no cache preference instead of PreferL1", "cache", "recursive; no preference", "recursive; prefer L1"),
-        times("  PreferShared instead of PreferL1", "cache", "recursive; prefer shared", "recursive; prefer L1"),
-        times("  last witness as seed instead of none", "seed", "recursive streams; last witness", "recursive streams; none"),
-    ]
-    clouds = (("table", 102400), ("table", 1000000), ("room", 307200), ("room", 5000000))
-    claims += ["\n" + heading(), "node tests per point, all parts (updates of the bound per point)\n"]
-    for variant in ("recursive; sequential", "recursive; nobody", "recursive; block", "recursive; all", "recursive; all; sequential parts",
-                    "recursive; all; fused parts", "recursive; all; grid of parts", "recursive; block; few threads", "recursive; all; few threads", "near first; nobody",
-                    "near first; block", "near first; all", "near first; all; last witness"):
-        if not paper.points_of["culling", "table", "node_tests"].get(variant):
-            continue
-        label = variant.replace("recursive; sequential", "recursive; on one CPU thread") if variant.endswith("sequential") else variant
-        claims.append(line("  " + label.replace(";", ","),
-                           lambda t: f"{number(t('culling', variant, 'node_tests'))} ({digits(t('culling', variant, 'updates'))})"))
-    clouds = (("table", 307200), ("table", 5000000), ("room", 307200), ("room", 5000000))
-    claims += ["\n" + heading(), "the paper's kernels, best width, over\n"]
-    over = "the paper's over ours "
-    for how in ("cold", "warm"):
-        claims.append(line(f"  ours, {how}", lambda t: f"{t('headline', over + how, 'ratio'):.1f} x"))
-    clouds = (("table", 307200), ("room", 307200))
-    claims += ["\n" + heading(30), "microseconds: the paper's kernels | near first, fused, otherwise the same | ours cold | ours warm\n"]
-    methods = ("the paper's; ", "near first fused; ", "ours cold; ", "ours warm; ")
-    for axis in ("width", "volume", "fit", "split"):
-        measured = paper.points_of[axis, "table", "us"]
-        for variant in dict.fromkeys(v.split("; ", 1)[1] for v in measured):
-            claims.append(line("  " + variant.replace(";", ","),
-                               lambda t: " | ".join(number(t(axis, m + variant)) for m in methods if m + variant in measured), 30))
-    claims.append("microseconds: ours cold | ours warm\n")
-    for variant in paper.points_of["layout", "table", "bytes_a_point"]:
-        claims.append(line(f"  points as {variant}", lambda t: " | ".join(number(t("layout", f"{variant}; {how}")) for how in ("cold", "warm")), 30))
-    return paper.stamp + "\n\n" + "".join(claims)
+def record(name):
+    """A file of bench/records, such as h200/latency.txt."""
+    if not (records / name).is_file():
+        raise Mistake(f"there is no bench/records/{name}")
+    return records / name
 
 
-def newest(name, beside=None):
-    """The file of this name in the newest run that has one; a page that lies beside one speaks of that."""
-    if beside and (beside / name).exists():
-        return beside / name
-    found = sorted(root.glob(f"docs/*-runs/*/{name}"))
-    if not found:
-        raise Mistake(f"no run has recorded a {name}")
-    return found[-1]
+@functools.cache
+def lines_of(name):
+    return [" ".join(line.split()) for line in record(name).read_text().splitlines()]
 
 
-def number_in(file, row, which=0):
-    """A number of the row that begins with `row`: the one at this place after it, or the first after the word `which`."""
-    lines = [" ".join(line.split()) for line in file.read_text().splitlines()]
+numbers = re.compile(r"(?<=\s)-?\d[\d,]*(?:\.\d+)?")
+microseconds = {"us": 1, "ms": 1e3, "s": 1e6}
+
+
+def number(name, row, what="0"):
+    """A number of the row that begins with `row`: as a time in the unit `what`, at that place, after that word, or in the column of
+    that heading. Of a .csv a row is axis/scene/points/variant, and `what` its metric."""
+    if name.endswith(".csv"):
+        axis, scene, points, variant = row.split("/", 3)
+        metric = "us" if what in microseconds else what
+        return paper(name).value(axis, variant, scene, int(points), metric) / microseconds.get(what, 1)
     begins = " ".join(row.split()) + " "
-    rows = [line[len(begins) - 1 :] for line in lines if line.startswith(begins)]
-    if len(rows) != 1:
-        raise Mistake(f"{file.relative_to(root)} has {len(rows)} rows '{row}', not one")
-    text = rows[0]
-    if isinstance(which, str):
-        if text.count(f" {which} ") != 1:
-            raise Mistake(f"{file.name}: the row '{row}' does not say '{which}' once")
-        text, which = text[text.index(f" {which} ") + len(which) + 1 :], 0
-    numbers = re.findall(r"(?<=\s)-?\d[\d,]*(?:\.\d+)?", text)
-    return float(numbers[which].replace(",", ""))
+    at = [k for k, line in enumerate(lines_of(name)) if line.startswith(begins)]
+    if len(at) != 1:
+        raise Mistake(f"bench/records/{name} has {len(at)} rows '{row}', not one")
+    text = lines_of(name)[at[0]][len(begins) - 1 :]
+    found = [float(n.replace(",", "")) for n in numbers.findall(text)]
+    if re.fullmatch(r"-?\d+", what):
+        return found[int(what)]
+    if what in microseconds:
+        unit = re.match(r" [\d.,]+ (us|ms|s)\b", text)
+        if not unit:
+            raise Mistake(f"bench/records/{name}: the row '{row}' begins with no time")
+        return found[0] * microseconds[unit[1]] / microseconds[what]
+    if text.count(f" {what} ") == 1:
+        return float(numbers.search(text, text.index(f" {what} ") + len(what) + 1)[0].replace(",", ""))
+    for heading in reversed(lines_of(name)[: at[0]]):
+        if what in heading.split() and len(heading.split()) == len(found):
+            return found[heading.split().index(what)]
+    raise Mistake(f"bench/records/{name}: the row '{row}' has no '{what}'")
 
 
 def commit_of(file):
-    """The commit that the first lines of a recorded file name."""
+    """The commit that the first lines of a record name."""
     found = set(re.findall(r"\bcommit ([0-9a-f]{7,40})\b", file.read_text().split("\n\n")[0]))
     if len(found) != 1:
-        raise Mistake(f"the first lines of {file.relative_to(root)} name {len(found)} commits, not one")
+        raise Mistake(f"the first lines of {file.name} name {len(found)} commits, not one")
     return found.pop()
+
+
+def says_where(text):
+    """Whether the first line of a record names a machine and a commit."""
+    first = text.split("\n", 1)[0]
+    return re.search("NVIDIA|AMD|Intel|ARM", first) and re.search(r"\bcommits? [0-9a-f]{7,40}\b", first)
+
+
+def goal(value, limit, form, prefix="", least=False):
+    """What was measured, and whether it is within its goal."""
+    met = value >= limit if least else value <= limit
+    return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
+
+
+key_of = re.compile(r"([\w./-]+): (?:(commit)|(.+), (?:(\S+) )?(,?\.\d+[fg])(?:, at (most|least) ([\d.]+))?)")
+
+
+def key(text):
+    """What a page gets for {h200/latency.txt: new_pose, us .1f}: a number of a record, in a unit and a format. `{..., at most 12}`
+    says whether it is within a goal, `{h200/latency.txt: commit}` of which commit the record is."""
+    parts = key_of.fullmatch(text)
+    if not parts:
+        raise Mistake("a key is {file: row, unit format} or {file: commit}")
+    name, commit, row, what, form, side, limit = parts.groups()
+    if commit:
+        return commit_of(record(name))
+    value = number(name, row, what or "0")
+    return goal(value, float(limit), form, least=side == "least") if side else format(value, form)
+
+
+@functools.cache
+def paper(name="h200/paper.csv"):
+    return Paper(record(name))
+
+
+def spread(values, form=""):
+    """The range of some values; without a format they are factors."""
+    return span(list(values), lambda v: format(v, form) if form else factor(v))
 
 
 def packages(name):
@@ -275,47 +210,3 @@ def apt_lines(**titles):
 def apt_for(name):
     """`apt install` of a whole list of scripts/lib.sh."""
     return "    apt install " + " ".join(packages("packages_" + name))
-
-
-@functools.cache
-def phrases(folder):
-    """What `<!-- = ... -->` in a page of this folder may use: each reads recorded files, and the result is put into the text."""
-    paper = Paper(newest("paper.csv", folder))
-
-    def number(name, row, which=0):
-        return number_in(newest(name, folder), row, which)
-
-    def commit(name):
-        return commit_of(newest(name, folder))
-
-    def spread(values, form=""):
-        """The range of some values; without a format they are factors."""
-        return span(list(values), lambda v: format(v, form) if form else factor(v))
-
-    def times(axis, over, under, scene=None, form="", under_axis=None):
-        """How many times as long `over` takes as `under` (of another axis): the range over all clouds that were measured."""
-        return spread(paper.ratios(axis, over, under, scene, under_axis), form)
-
-    def clouds(*keys, scene=None):
-        """For each cloud that was measured the values of all keys: (axis, variant[, metric]), or "points"."""
-        columns = [None if key == "points" else paper.values(key[0], key[1], scene, *key[2:]) for key in keys]
-        first = next(column for column in columns if column is not None)
-        if any(column is not None and column.keys() != first.keys() for column in columns):
-            raise Mistake(f"{keys} were measured with different clouds")
-        return [tuple(cloud[1] if column is None else column[cloud] for column in columns) for cloud in first]
-
-    def measured(axis, variant, scene=None, metric="us", scale=1, form=",.0f"):
-        return spread([scale * v for v in paper.values(axis, variant, scene, metric).values()], form)
-
-    def along(variant, scene, scale=1, form=",.0f", metric="us"):
-        """The range along the run of the robot (axis motion)."""
-        return spread([scale * v for v in paper.steps_of["motion", scene, metric][variant].values()], form)
-
-    def goal(value, limit, form, prefix="", least=False):
-        """What was measured, and whether it is within its goal."""
-        met = value >= limit if least else value <= limit
-        return f"{'' if met else 'missed: '}{prefix}{value:{form}}"
-
-    return {"number": number, "commit": commit, "paper": paper.value, "times": times, "measured": measured,
-            "clouds": clouds, "along": along, "spread": spread, "goal": goal, "format": format, "apt_lines": apt_lines,
-            "apt_for": apt_for, "min": min, "max": max}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Does every promise of docs/promises.md name a test that exists? Exit code 1, and a line for each that does not.
 
-Each row of a table that begins with "promise" must name, in its last column, `folder/x_test.cpp`: "the name of its case", or a `scripts/x`.
+Each row of a table that begins with "promise" must name, in its last column, `folder/x_test.cpp`: "the name of its case", or a script.
 """
 
 import pathlib
@@ -32,7 +32,7 @@ def faults(page):
         rows += 1
         held = cells[-1]
         named = re.findall(r'`([\w/]+_test\.cu|[\w/]+_test\.cpp)`: "([^"]+)"', held)
-        scripts = re.findall(r"`(scripts/[\w-]+)`", held)
+        scripts = re.findall(r"`((?:scripts|tests/\w+)/[\w-]+)`", held)
         rest = re.sub(r'`[\w/.-]+`(: "[^"]+")?|[;\s]', "", held)
         if len(cells) != 3 or not (named or scripts) or rest:
             found.append(f"{page.name}:{number}: a row needs a promise, a figure and tests, and has {held!r}")

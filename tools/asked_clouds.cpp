@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_clouds.hpp"
 
+#include "camera_checks.hpp"
 #include "certain_report.hpp"
 
 using namespace clearance;
 
 void asked_clouds::load(const query_options& asked, progress& shown, std::vector<std::string>& notes) {
+  check_image_sizes(asked.clouds);
   std::set<std::string> names;
   for (const cloud_options& from : asked.clouds) {
     shown.show("reading " + from.file);
     files.push_back(observe(from, names));
     notes.insert(notes.end(), files.back().notes.begin(), files.back().notes.end());
+    note_camera(files.back(), notes);
   }
 }
 

@@ -3,10 +3,9 @@
 
 #include "command_line.hpp"
 #include "kept_packings.hpp"
+#include "noted_files.hpp"
+#include "recording.hpp"
 #include "robot_bodies.hpp"
-
-#include <clearance/io/mesh.hpp>
-#include <clearance/io/spheres_file.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -70,12 +69,12 @@ attached_thing load_attached(const query_options& asked, const attachment_option
     throw usage_error("--attach", error.what());
   }
   if (io::spheres_format(from.file).empty()) {
-    made.mesh = io::load_mesh(from.file, asked.limits);
+    made.mesh = noted_mesh(from.file, asked.limits, asked.gltf_up, notes);
     return made;
   }
   if (asked.model != model_kind::spheres)
     throw usage_error("--attach", from.file + " holds spheres, which are for --model spheres");
-  auto parts = io::within_memory(from.file, [&] { return io::load_spheres(from.file, asked.limits); });
+  auto parts = io::within_memory(from.file, [&] { return noted_spheres(from.file, asked.limits, notes); });
   if (parts.size() != 1)
     io::refuse(from.file,
                "holds the spheres of " + std::to_string(parts.size()) + " parts, and --attach takes those of one");
@@ -116,7 +115,8 @@ body make_held(const query_options& asked, const attached_thing& thing, progress
 asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes) {
   io::robot_options options;
   options.geometry = asked.visual.value_or(false) ? io::robot_geometry::visual : io::robot_geometry::collision;
-  for (const auto& [name, folder] : asked.packages) options.packages[name] = folder;
+  options.packages = asked.packages;
+  options.gltf_up = asked.gltf_up;
   options.exclude_links = asked.excluded;
   options.strict = asked.strict;
   options.limits = asked.limits;
@@ -124,7 +124,11 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
       io::within_memory(asked.robot,
                         [&] { return about_file(asked.robot, [&] { return io::load_robot(asked.robot, options); }); }),
       {}};
+  notes.insert(notes.end(), asked.notes.begin(), asked.notes.end());
   notes.insert(notes.end(), made.description.notes().begin(), made.description.notes().end());
+  const auto own = io::followers_among(made.description.kinematics(), joints_named(asked));
+  for (const std::string& name : own) notes.push_back(io::note_on_freed(made.description.kinematics(), name));
+  made.description.free_joints(own);
   for (const attachment_options& from : asked.attached) made.held.push_back(load_attached(asked, from, made, notes));
   return made;
 }
@@ -163,7 +167,7 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
     check_kept(body_options_of(asked).cache, named, notes);
   std::vector<io::packed_part> given;
   if (!asked.packing.empty())
-    given = io::within_memory(asked.packing, [&] { return io::load_spheres(asked.packing, asked.limits); });
+    given = io::within_memory(asked.packing, [&] { return noted_spheres(asked.packing, asked.limits, notes); });
   const auto spheres_of = assigned(given, robot.description, asked);
   const bool packs_held = std::ranges::any_of(robot.held, [](const auto& thing) { return !thing.spheres; });
   if (asked.spheres && !packs_held && std::ranges::count(spheres_of, nullptr) == 0)

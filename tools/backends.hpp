@@ -101,8 +101,8 @@ class backend_robot {
   virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
   /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
   virtual clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) = 0;
-  /// About what the clouds hide, which must all be images.
-  virtual clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options) = 0;
+  /// About what the clouds hide, which must all be images. `until_end`: or may hide until the plan ends.
+  virtual clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options, bool until_end) = 0;
   /// The witnesses of the minima of least_per_part.
   virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                          std::span<const clearance::part_minimum> minima) = 0;
@@ -115,6 +115,10 @@ class backend_robot {
   /// How near the robot comes on each way.
   virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                                const clearance::motion_clearance_options& options) = 0;
+  /// The same about what the clouds hide, whose parts' radii are those of `room`. `unknown`: it may reach into that.
+  virtual std::vector<clearance::motion_clearance_result> hidden_ways(
+      std::span<const clearance::io::joint_motion> ways, const clearance::motion_clearance_options& options,
+      const clearance::unseen& room) = 0;
   virtual std::span<const clearance::part_facts> facts() = 0;
 
   // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.

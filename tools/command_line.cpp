@@ -112,6 +112,20 @@ clearance::io::mesh_limits limits_of(const std::vector<std::string>& given) {
   return made;
 }
 
+std::map<std::string, std::filesystem::path> packages_of(const std::vector<std::string>& given) {
+  std::map<std::string, std::filesystem::path> all;
+  for (const std::string& text : given) {
+    const auto [name, folder] = assignment("--package", text, "name=DIR");
+    if (!all.emplace(name, folder).second) throw usage_error("--package", name + " is given twice");
+  }
+  return all;
+}
+
+std::optional<clearance::io::gltf_axis> gltf_axis_of(const std::string& given) {
+  if (given.empty()) return std::nullopt;
+  return clearance::io::gltf_axis(choice("--gltf-up", given, {"y", "z"}));
+}
+
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text, const char* form) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0 || equals + 1 == text.size())

@@ -3,12 +3,16 @@
 // What the subcommands share: how words become numbers and poses, and the errors if they do not.
 
 #include <clearance/io/limits.hpp>
+#include <clearance/io/mesh_gltf.hpp>
 #include <clearance/io/sentence.hpp>
 
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -61,6 +65,18 @@ std::size_t choice(const std::string& option, const std::string& text, const std
 /// The mesh limits of --mesh-limit, name=number each; the names are those in refusals.
 clearance::io::mesh_limits limits_of(const std::vector<std::string>& given);
 std::string mesh_limit_says();
+inline constexpr const char* geometry_says = "visual or collision (default; visual where a link has no collision)";
+inline constexpr const char* package_says =
+    "name=DIR: where package://name/ is, and what follows name/ in an absolute path that is not on this machine";
+
+/// The folders of --package by their names, each given once.
+std::map<std::string, std::filesystem::path> packages_of(const std::vector<std::string>& given);
+
+/// The axis of --gltf-up, none if it is not given; and its help.
+std::optional<clearance::io::gltf_axis> gltf_axis_of(const std::string& given);
+inline constexpr const char* gltf_up_says =
+    "y or z: which axis of glTF meshes (.glb, .gltf) is up (default: as a link's other geometry shows, else y, as the "
+    "format has it; a note says which)";
 
 /// Splits a text into two words at the first '='; a refusal shows the expected form.
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "distances_file.hpp"
 
-#include <clearance/io/distance_colour.hpp>
 #include <clearance/io/ply_writer.hpp>
+#include <clearance/io/scene.hpp>
 
 #include <cmath>
 #include <cstdio>

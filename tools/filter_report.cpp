@@ -18,7 +18,7 @@ own_points hide_own_points(const query_options& asked, backend_robot& there, pos
                            const std::vector<double>& radii) {
   own_points found{.filter = there.own_points(poses, *asked.self_filter), .unseen = {}};
   if (asked.unseen) {
-    found.unseen = there.unseen(poses, {.room = *asked.unseen, .labels = found.filter.labels, .radii = radii});
+    found.unseen = there.unseen(poses, {.room = *asked.unseen, .labels = found.filter.labels, .radii = radii}, false);
     found.unseen_query = there.query;
   }
   clouds.hide(found.filter.labels);

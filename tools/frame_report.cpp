@@ -66,6 +66,7 @@ std::string to_json(const frame_report& report) {
       plan["lower"].push_back(r.state == state::no_data ? json(nullptr) : or_null(r.lower));
     for (const certain_row& row : report.plan->certain)
       plan["certain_lower"].push_back(row.state == state::no_data ? json(nullptr) : or_null(row.lower));
+    for (const unseen_result& row : report.plan->unseen) plan["unseen_lower"].push_back(or_null(row.all.lower));
     plan["latency_us"] = microseconds(report.plan->query);
   }
   return json_text(out, -1);
@@ -82,6 +83,7 @@ std::string to_csv(const frame_report& report) {
     out += part_columns(report);
     if (report.plan) out += report.plan->asked->margin ? ",plan_least,plan_at,plan_first_below" : ",plan_least,plan_at";
     if (report.plan && !report.plan->certain.empty()) out += ",plan_certain_lower,plan_certain_at";
+    if (report.plan && !report.plan->unseen.empty()) out += ",plan_unseen_lower,plan_unseen_at";
     out += '\n';
   }
   out += std::to_string(report.frame) + ',' + csv_word(report.file) + ',' +
@@ -97,8 +99,11 @@ std::string to_csv(const frame_report& report) {
   if (report.plan)
     for (const auto plan = outcome_of(*report.plan); const char* const name : {"least", "at", "first_below"})
       if (plan.contains(name)) out += ',' + csv_word(plan[name]);
-  if (report.plan && !report.plan->certain.empty())
-    for (const auto plan = outcome_of(*report.plan); const char* const name : {"least_lower", "at"})
-      out += ',' + csv_word(plan["certain"][name]);
+  for (const auto& [what, any] : {std::pair("certain", report.plan && !report.plan->certain.empty()),
+                                  {"unseen", report.plan && !report.plan->unseen.empty()}}) {
+    if (!any) continue;
+    const json its = outcome_of(*report.plan)[what];
+    for (const char* const name : {"least_lower", "at"}) out += ',' + csv_word(its[name]);
+  }
   return out + '\n';
 }

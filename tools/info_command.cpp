@@ -3,14 +3,13 @@
 #include "command_line.hpp"
 #include "json_text.hpp"
 #include "messages.hpp"
+#include "noted_files.hpp"
 #include "report_text.hpp"
 #include "robot_bodies.hpp"
 
 #include <clearance/ground/config.hpp>
-#include <clearance/io/mesh.hpp>
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/io/spheres_file.hpp>
 
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
@@ -24,7 +23,9 @@ namespace {
 
 /// Describes a file of spheres. Exit code 0: the file is complete.
 int describe(const std::string& file, bool as_json) {
-  const auto parts = clearance::io::within_memory(file, [&] { return clearance::io::load_spheres(file); });
+  std::vector<std::string> notes;
+  const auto parts = clearance::io::within_memory(file, [&] { return noted_spheres(file, {}, notes); });
+  say_notes(notes);
   json out = {{"file", file}, {"parts", json::array()}};
   std::string text = clearance::io::printable(file) + ": " + std::to_string(parts.size()) +
                      (parts.size() == 1 ? " part\n" : " parts\n");
@@ -59,20 +60,19 @@ int describe(const std::string& file, bool as_json) {
 }
 
 /// Says how the inside of each part of a robot, or of a mesh, is known. Exit code 0: all of its files are complete.
-int describe_solids(const std::string& file, const std::vector<std::string>& packages, bool as_json) {
+int describe_solids(const std::string& file, const std::vector<std::string>& packages,
+                    std::optional<clearance::io::gltf_axis> up, bool visual, bool as_json) {
   std::vector<clearance::io::robot_part> parts;
   std::vector<std::string> notes;
   if (file.ends_with(".urdf")) {
     clearance::io::robot_options options;
-    for (const auto& text : packages) {
-      const auto [name, folder] = assignment("--package", text, "name=DIR");
-      options.packages[name] = folder;
-    }
+    options.packages = packages_of(packages);
+    options.gltf_up = up;
+    if (visual) options.geometry = clearance::io::robot_geometry::visual;
     const auto robot = clearance::io::load_robot(file, options);
     parts = robot.parts(), notes = robot.notes();
   } else {
-    if (!packages.empty()) throw usage_error("--package", "is for robots, and " + file + " is none by its name");
-    parts.push_back({.name = std::filesystem::path(file).stem().string(), .mesh = clearance::io::load_mesh(file)});
+    parts.push_back({.name = std::filesystem::path(file).stem().string(), .mesh = noted_mesh(file, {}, up, notes)});
   }
   std::vector<body_source> sources;
   for (const auto& part : parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
@@ -111,21 +111,30 @@ subcommand add_info(CLI::App& app) {
       "robot's parts, or a mesh, enclose");
   struct settings {
     std::string file;
+    std::string gltf_up, geometry;
     std::vector<std::string> packages;
     bool json = false;
   };
   auto asked = std::make_shared<settings>();
   sub->add_option("FILE", asked->file, "Spheres (.ist, .yaml or .csv), a robot (.urdf) or a mesh");
-  sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
+  sub->add_option("--geometry", asked->geometry, geometry_says);
+  sub->add_option("--package", asked->packages, package_says);
+  sub->add_option("--gltf-up", asked->gltf_up, gltf_up_says);
   sub->add_flag("--json", asked->json, "Print one JSON object");
   return [asked] {
     const bool spheres = !clearance::io::spheres_format(asked->file).empty();
-    if (spheres && !asked->packages.empty())
-      throw usage_error("--package", "is for robots, and " + asked->file + " is none by its name");
+    if (!asked->file.empty() && !asked->file.ends_with(".urdf"))
+      for (const auto& [option, given] :
+           {std::pair{"--geometry", !asked->geometry.empty()}, {"--package", !asked->packages.empty()}})
+        if (given) throw usage_error(option, "is for robots, and " + asked->file + " is none by its name");
+    const bool visual = !asked->geometry.empty() && choice("--geometry", asked->geometry, {"collision", "visual"}) == 1;
+    if (spheres && !asked->gltf_up.empty())
+      throw usage_error("--gltf-up", "is for meshes, and " + asked->file + " holds spheres");
     if (spheres) return describe(asked->file, asked->json);
     if (!asked->file.empty())
-      return clearance::io::within_memory(asked->file,
-                                          [&] { return describe_solids(asked->file, asked->packages, asked->json); });
+      return clearance::io::within_memory(asked->file, [&] {
+        return describe_solids(asked->file, asked->packages, gltf_axis_of(asked->gltf_up), visual, asked->json);
+      });
     const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' +
                                 std::to_string(CLEARANCE_VERSION_MINOR) + '.' + std::to_string(CLEARANCE_VERSION_PATCH);
     const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -142,13 +151,13 @@ subcommand add_info(CLI::App& app) {
       std::cout << json_text(out, 2);
       return 0;
     }
-    std::cout
-        << "clearance " << version << ", compiled by " << __VERSION__ << '\n'
-        << "host    " << threads << " threads\n"
-        << "device  " << (gpu.present ? gpu.says : "none: " + gpu.says) << '\n'
-        << "reads   robots: URDF; meshes: STL, OBJ, PLY, OFF, DAE, GLB; clouds: PCD, PLY, XYZ; depth: 16-bit PNG\n"
-        << "writes  scenes: GLB\n"
-        << "both    spheres: IST, YAML, CSV; kept in " << (cache.empty() ? "no cache" : cache) << '\n';
+    std::cout << "clearance " << version << ", compiled by " << __VERSION__ << '\n'
+              << "host    " << threads << " threads\n"
+              << "device  " << (gpu.present ? gpu.says : "none: " + gpu.says) << '\n'
+              << "reads   robots: URDF; meshes: STL, OBJ, PLY, OFF, DAE, GLB, GLTF; clouds: PCD, PLY, XYZ; depth: "
+                 "16-bit PNG\n"
+              << "writes  scenes: GLB\n"
+              << "both    spheres: IST, YAML, CSV; kept in " << (cache.empty() ? "no cache" : cache) << '\n';
     return 0;
   };
 }

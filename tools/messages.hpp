@@ -2,6 +2,8 @@
 #pragma once
 // Everything that the command tells people besides its answers: lines of at most 400 bytes, harmless on a terminal.
 
+#include "report_text.hpp"
+
 #include <clearance/io/sentence.hpp>
 
 #include <cstdio>
@@ -11,7 +13,9 @@
 /// Prints "word: text" on stderr.
 inline void say(const std::string& word, const std::string& text) {
   const std::string line =
-      word + ": " + clearance::io::sentence(text, clearance::io::longest_sentence - word.size() - 2) + '\n';
+      word + ": " +
+      clearance::io::sentence(with_short_numbers(text, false), clearance::io::longest_sentence - word.size() - 2) +
+      '\n';
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

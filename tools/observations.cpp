@@ -44,6 +44,10 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
   }
   io::cloud cloud = io::load_cloud(from.file, from.limits);
   check_made(from, cloud.points.size(), sizeof(Eigen::Vector3d) + sizeof(vec3), "points");
+  if (from.cloud_scale != 1) {
+    for (Eigen::Vector3d& p : cloud.points) p *= from.cloud_scale;
+    if (cloud.viewpoint) cloud.viewpoint->translation *= from.cloud_scale;
+  }
   std::uint64_t zeros = 0;
   for (Eigen::Vector3d& p : cloud.points) {
     if (!p.isZero(0)) continue;

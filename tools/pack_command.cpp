@@ -3,12 +3,12 @@
 #include "json_text.hpp"
 #include "kept_packings.hpp"
 #include "messages.hpp"
+#include "noted_files.hpp"
+#include "report_text.hpp"
 #include "robot_bodies.hpp"
 
-#include <clearance/io/mesh.hpp>
 #include <clearance/io/packing_scene.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/io/spheres_file.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -20,7 +20,7 @@ using namespace clearance;
 namespace {
 
 struct pack_settings {
-  std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints, backend = "host";
+  std::string input, spheres, gap, radius, seconds, seed, geometry, cache, joints, gltf_up, backend = "host";
   std::vector<std::string> out, packages, mesh_limits, excluded;
   bool overlap = false, strict = false, no_cache = false, json = false;
 };
@@ -51,8 +51,9 @@ subject load(const pack_settings& asked) {
                                         {"--joints", !asked.joints.empty()},
                                         {"--strict", asked.strict}})
       if (given) throw usage_error(option, "is for robots, and " + asked.input + " is none by its name");
-    made.parts.push_back({.name = std::filesystem::path(asked.input).stem().string(),
-                          .mesh = io::load_mesh(asked.input, limits_of(asked.mesh_limits))});
+    made.parts.push_back(
+        {.name = std::filesystem::path(asked.input).stem().string(),
+         .mesh = noted_mesh(asked.input, limits_of(asked.mesh_limits), gltf_axis_of(asked.gltf_up), made.notes)});
     made.poses.push_back(Eigen::Isometry3d::Identity());
     return made;
   }
@@ -60,12 +61,10 @@ subject load(const pack_settings& asked) {
   io::robot_options options;
   if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1)
     options.geometry = io::robot_geometry::visual;
-  for (const auto& text : asked.packages) {
-    const auto [name, folder] = assignment("--package", text, "name=DIR");
-    options.packages[name] = folder;
-  }
+  options.packages = packages_of(asked.packages);
   options.exclude_links = asked.excluded;
   options.strict = asked.strict;
+  options.gltf_up = gltf_axis_of(asked.gltf_up);
   options.limits = limits_of(asked.mesh_limits);
   const io::robot robot = io::load_robot(asked.input, options);
   const auto& tree = robot.kinematics();
@@ -151,12 +150,6 @@ nlohmann::ordered_json quality(const body& b, bool cached) {
           {"stopped_by", name_of(p.stopped_by)},
           {"seconds", p.seconds},
           {"cached", cached}};
-}
-
-std::string text(const char* format, auto... values) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
 }
 
 void print_one(const body& b, bool cached) {
@@ -256,7 +249,8 @@ subcommand add_pack(CLI::App& app) {
       "host (default) or device: sooner, but other spheres than those that query and run make and keep");
   one("--geometry", asked->geometry, "Of a robot: visual or collision (default)");
   sub->add_flag("--strict", asked->strict, "Refuse of the robot's description what would get a note");
-  sub->add_option("--package", asked->packages, "name=DIR: where package://name/ is");
+  sub->add_option("--package", asked->packages, package_says);
+  sub->add_option("--gltf-up", asked->gltf_up, gltf_up_says);
   sub->add_option("--mesh-limit", asked->mesh_limits, mesh_limit_says());
   sub->add_option("--exclude-link", asked->excluded, "Leave out this link");
   one("--joints", asked->joints, "a,b,...: how the robot stands in the .glb (default: 0, or the nearest limit)");

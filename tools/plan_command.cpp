@@ -7,8 +7,11 @@
 #include "ranks.hpp"
 #include "recording.hpp"
 #include "report_text.hpp"
+#include "scale_notes.hpp"
 
 #include <clearance/io/joint_motion.hpp>
+#include <clearance/motion_clearance.hpp>
+#include <clearance/questions/unseen.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -59,11 +62,12 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   const asked_model model{asked.model, asked.volume, &bodies, fields,
                           chosen_cache(asked.no_cache, asked.cache).folder()};
   auto there = robot_on(asked.on_device, model);
-  if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
+  if (ranks) there = ranks->together(std::move(there), model, asked.alike);
   report.upload = there->see(clouds.seen);
   std::vector<double> radii;
   if (asked.certain) check_d_max(asked, radii = radii_in_rows(asked, robot, rows, there->facts()));
   report.found = ask_plan(*there, placed, asked.d_max, report.query);
+  note_scale(clouds.seen, bodies, placed.first().first(bodies.size()), report.found.of[0], notes);
   if (asked.certain) {
     report.certain = ask_certain_plan(*there, placed, asked.d_max, radii, report.query);
     note_anywhere(report.certain[0].anywhere, notes);
@@ -71,16 +75,22 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   if (asked.unseen) {
     shown.show("asking about what is hidden");
     report.unseen =
-        ask_plan_unseen(*there, placed, {.room = *asked.unseen, .radii = radii}, bodies.size(), report.query);
+        ask_plan_unseen(*there, placed, {.room = *asked.unseen, .radii = radii}, bodies.size(), false, report.query);
   }
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin only as exact as the decision needs; otherwise to a centimetre.
-    const motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
-                                           .margin = asked.margin.value_or(0),
-                                           .radii = radii_between_rows(asked, robot, rows, there->facts())};
-    report.ways = there->ways(ways_between(asked, robot, rows), options);
+    motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
+                                     .margin = asked.margin.value_or(0),
+                                     .radii = radii_between_rows(asked, robot, rows, there->facts())};
+    const auto ways = ways_between(asked, robot, rows);
+    report.ways = there->ways(ways, options);
     report.query += there->query;
+    if (asked.unseen) {
+      const unseen room{.room = *asked.unseen, .radii = std::exchange(options.radii, {})};
+      report.hidden = there->hidden_ways(ways, options, room);
+      report.query += there->query;
+    }
   }
   if (ranks) ranks->part();
   if (ranks && !ranks->speaks()) return 0;
@@ -99,6 +109,9 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
     if (const auto way = report.first_way_below())
       notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
                       " to the next the margin may be fallen below");
+    if (const auto way = report.first_hidden_way_below())
+      notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
+                      " to the next what is hidden may be within the margin");
   }
   note_fields(*there, bodies, notes);
   say_notes(notes);

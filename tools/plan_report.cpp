@@ -26,9 +26,8 @@ json certain_of(const plan_report& report, std::size_t k) {
           {"point", point ? json(row.point) : json(nullptr)}};
 }
 
-/// The way from row k to the next; `time`, `from` and `to` are between 0 and 1.
-json way_of(const plan_report& report, std::size_t k) {
-  const motion_clearance_result& way = report.ways[k];
+/// What is said of a way; `time`, `from` and `to` are between 0 and 1.
+json way_of(const plan_report& report, const motion_clearance_result& way) {
   const bool any = way.state != state::no_data;
   const auto given = [&](json value) { return any ? value : json(nullptr); };
   return {{"state", to_string(way.state)},
@@ -42,6 +41,32 @@ json way_of(const plan_report& report, std::size_t k) {
           {"settled", way.settled}};
 }
 
+/// The way from row k to the next.
+json way_of(const plan_report& report, std::size_t k) {
+  json way = way_of(report, report.ways[k]);
+  if (k < report.hidden.size()) way["unseen"] = way_of(report, report.hidden[k]);
+  return way;
+}
+
+std::optional<std::size_t> first_within(const std::vector<motion_clearance_result>& ways, double margin) {
+  for (std::size_t k = 0; k < ways.size(); ++k)
+    if (!(ways[k].lower > margin)) return k;
+  return std::nullopt;
+}
+
+/// Of all ways.
+json worst_of(const plan_report& report, const std::vector<motion_clearance_result>& ways) {
+  const auto worst = std::ranges::min_element(ways, {}, &motion_clearance_result::lower);
+  const bool some = !report.blind() && worst != ways.end();
+  json out = {{"least_lower", some ? or_null(worst->lower) : json(nullptr)},
+              {"at", some ? json(worst - ways.begin()) : json(nullptr)}};
+  if (report.asked->margin) {
+    const auto first = first_within(ways, *report.asked->margin);
+    out["first_below"] = first ? json(*first) : json(nullptr);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<std::size_t> plan_report::first_below() const {
@@ -52,11 +77,8 @@ std::optional<std::size_t> plan_report::first_below() const {
   return first < found.of.size() ? std::optional(first) : std::nullopt;
 }
 
-std::optional<std::size_t> plan_report::first_way_below() const {
-  for (std::size_t k = 0; k < ways.size(); ++k)
-    if (!(ways[k].lower > *asked->margin)) return k;
-  return std::nullopt;
-}
+std::optional<std::size_t> plan_report::first_way_below() const { return first_within(ways, *asked->margin); }
+std::optional<std::size_t> plan_report::first_hidden_way_below() const { return first_within(hidden, *asked->margin); }
 
 std::optional<std::size_t> plan_report::first_hidden_below() const {
   for (std::size_t k = 0; k < unseen.size(); ++k)
@@ -95,15 +117,8 @@ json outcome_of(const plan_report& report) {
     }
   }
   if (!report.asked->between) return out;
-  const auto worst =
-      std::ranges::min_element(report.ways, {}, [](const motion_clearance_result& way) { return way.lower; });
-  const bool some = !report.blind() && worst != report.ways.end();
-  out["ways"] = {{"least_lower", some ? or_null(worst->lower) : json(nullptr)},
-                 {"at", some ? json(worst - report.ways.begin()) : json(nullptr)}};
-  if (report.asked->margin) {
-    const auto first = report.first_way_below();
-    out["ways"]["first_below"] = first ? json(*first) : json(nullptr);
-  }
+  out["ways"] = worst_of(report, report.ways);
+  if (report.asked->unseen) out["ways"]["unseen"] = worst_of(report, report.hidden);
   return out;
 }
 
@@ -123,6 +138,8 @@ std::string to_json(const plan_report& report) {
   min_distance_result all = report.found.of[0];
   for (const observation& cloud : *report.clouds) cloud.recount(all);
   last["points"] = counts(all);
+  last["clouds"] = json::array();
+  for (const observation& cloud : *report.clouds) last["clouds"].push_back(about_cloud(cloud));
   last["model"] = to_string(report.asked->model);
   if (report.fields > 0) last["fields"] = {{"links", report.fields}, {"cached", report.fields_cached}};
   last["backend"] = report.asked->on_device ? "device" : "host";
@@ -139,7 +156,8 @@ std::string to_csv(const plan_report& report) {
       std::string("row,") + witness_columns +
       (report.certain.empty() ? "" : ",certain_state,certain_lower,certain_part") +
       (report.unseen.empty() ? "" : std::string(",") + unseen_columns) +
-      (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part\n" : "\n");
+      (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part" : "") +
+      (report.asked->between && report.asked->unseen ? ",way_unseen_state,way_unseen_lower,way_unseen_part\n" : "\n");
   for (std::size_t k = 0; k < report.found.of.size(); ++k) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + witness_cells(r, cloud_of(report, r), r.point, *report.bodies);
@@ -151,6 +169,11 @@ std::string to_csv(const plan_report& report) {
       const json way = k < report.ways.size() ? way_of(report, k) : json::object();  // the last has none
       for (const char* name : {"state", "lower", "upper", "time", "from", "to", "part"})
         out += ',' + (way.contains(name) ? csv_word(way[name]) : std::string());
+      for (const char* name : {"state", "lower", "part"})
+        if (report.asked->unseen)
+          out +=
+              ',' + (way.contains("unseen") ? csv_word(way["unseen"][name], *name == 'l' ? report.hidden[k].lower : 0)
+                                            : std::string());
     }
     out += '\n';
   }

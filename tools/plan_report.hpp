@@ -20,6 +20,7 @@ struct plan_report {
   std::vector<certain_row> certain = {};                        // of each, if something is uncertain
   std::vector<clearance::unseen_result> unseen = {};            // for --unseen: of each configuration
   std::vector<clearance::motion_clearance_result> ways = {};    // for --between: way k goes from row k to the next
+  std::vector<clearance::motion_clearance_result> hidden = {};  // for both: the ways, about what the clouds hide
   std::size_t fields = 0, fields_cached = 0;                    // that were used, and how many of them the cache had
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds
 
@@ -30,11 +31,14 @@ struct plan_report {
   std::optional<std::size_t> first_way_below() const;
   /// The first configuration that what is hidden may be nearer to than the margin, or as near.
   std::optional<std::size_t> first_hidden_below() const;
+  /// The first way that may come nearer than the margin to what is hidden.
+  std::optional<std::size_t> first_hidden_way_below() const;
   unseen_report of_unseen(std::size_t row) const;
   bool blind() const { return found.of[0].state == clearance::state::no_data; }
   /// 3 without a valid point, 2 if --check fails.
   int code() const {
-    const bool below = asked->margin && (first_below() || first_way_below() || first_hidden_below());
+    const bool below =
+        asked->margin && (first_below() || first_way_below() || first_hidden_below() || first_hidden_way_below());
     return blind() ? 3 : below ? 2 : 0;
   }
 };

@@ -7,6 +7,7 @@
 #include "query_print.hpp"
 #include "ranks.hpp"
 #include "report_text.hpp"
+#include "scale_notes.hpp"
 #include "stopwatch.hpp"
 
 #include <clearance/io/hidden_mesh.hpp>
@@ -142,7 +143,8 @@ void ask_questions(query_report& report, backend_robot& there, poses_of poses, c
     report.certain = there.certain(poses, radii_of(asked, *report.robot, joints, there.facts()));
     note_anywhere(report.certain->anywhere, report.notes);
   }
-  if (asked.unseen && !report.unseen) report.unseen = there.unseen(poses, {.room = *asked.unseen, .radii = radii});
+  if (asked.unseen && !report.unseen)
+    report.unseen = there.unseen(poses, {.room = *asked.unseen, .radii = radii}, false);
   if (asked.gradient)
     report.gradients = gradients(asked, *report.robot, joints, poses, there.witnesses(poses, report.found.parts));
 }
@@ -180,7 +182,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   shown.show("asking");
   const asked_model model{asked.model, asked.volume, &bodies};
   auto there = robot_on(asked.on_device, model);
-  if (ranks) there = ranks->together(std::move(there), model, questions_of(asked));
+  if (ranks) there = ranks->together(std::move(there), model, asked.alike);
   report.upload = there->see(clouds.seen);
   if (asked.self_filter) {
     own_points own = hide_own_points(asked, *there, poses, clouds, summed_radii(asked, robot, joints, there->facts()));
@@ -188,6 +190,7 @@ int run(const query_options& asked, all_ranks* ranks) {
     note_hidden(asked, report.notes);
   }
   ask_questions(report, *there, poses, joints);
+  note_scale(clouds.seen, bodies, poses, report.found.result, report.notes);
   std::optional<point_distances> distances;
   if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
   if (ranks) ranks->part();

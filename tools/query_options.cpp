@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query_options.hpp"
 
+#include "cloud_options.hpp"
 #include "command_line.hpp"
+#include "option_table.hpp"
 
 #include <clearance/ground/pose.hpp>
 #include <clearance/io/cloud_file.hpp>
@@ -9,44 +11,12 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <map>
-#include <sstream>
 #include <string_view>
 #include <utility>
-
-bool cloud_options::is_image() const { return clearance::io::extension(file) == ".png"; }
-
-void cloud_options::check(const std::string& option) const {
-  if (is_image() && !camera)
-    throw usage_error(option, file + " is a depth image, which needs --intrinsics fx,fy,cx,cy");
-}
-
-void cloud_options::check_hides() const {
-  if (!is_image())
-    throw usage_error("--unseen",
-                      file + " is a point cloud, which does not say what was hidden; it needs a depth image");
-}
 
 namespace {
 
 constexpr std::size_t most_listed = std::size_t(1) << 20;  // the library's limit, for --nearest and --support-limit
-
-constexpr std::string_view for_images[] = {"--intrinsics", "--depth-scale"},
-                           for_clouds[] = {"--use-viewpoint", "--zero-is-missing"};
-
-}  // namespace
-
-void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>& clouds) {
-  const auto images = std::size_t(std::ranges::count_if(clouds, &cloud_options::is_image));
-  for (const std::string& option : all.given) {
-    if (images == 0 && std::ranges::count(for_images, option))
-      throw usage_error(option, "is for depth images, and there is none");
-    if (images == clouds.size() && std::ranges::count(for_clouds, option))
-      throw usage_error(option, "is for point clouds, and there is none");
-  }
-}
-
-namespace {
 
 using texts = std::vector<std::string>;
 
@@ -54,10 +24,10 @@ struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
   std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
+      gltf_up, report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
   std::optional<std::string> unseen, fields;  // without a value: empty
-  texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales, ranges,
-      sensors, calibrations;
+  texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales,
+      cloud_scales, ranges, sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
        gradient = false, shard = false, is_signed = false, between = false;
 };
@@ -69,34 +39,6 @@ double amount(const std::string& option, const std::string& text, const char* un
   return x;
 }
 
-/// kinect, stereo:F,B,S, tof:C,S or lidar:C,S.
-clearance::any_noise sensor_of(const std::string& option, const std::string& text) {
-  using clearance::real;
-  const std::size_t at = text.find(':');
-  const std::string kind = text.substr(0, at), rest = at == text.npos ? std::string() : text.substr(at + 1);
-  clearance::any_noise sensor;
-  const auto of = [&](std::size_t count, const char* what) { return numbers(option, rest, count, kind + ':' + what); };
-  if (kind == "stereo") {
-    const auto v = of(3, "F,B,S (focal length in pixels, baseline in m, deviation of a disparity in pixels)");
-    sensor.kind = clearance::noise_kind::stereo, sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
-  } else if (kind == "tof") {
-    const auto v = of(2, "C,S (m, and m for each square metre)");
-    sensor.kind = clearance::noise_kind::tof, sensor.tof = {real(v[0]), real(v[1])};
-  } else if (kind == "lidar") {
-    const auto v = of(2, "C,S (m, and m for each metre)");
-    sensor.kind = clearance::noise_kind::lidar, sensor.lidar = {real(v[0]), real(v[1])};
-  } else if (text == "kinect") {
-    sensor.kind = clearance::noise_kind::kinect;
-  } else {
-    throw usage_error(option, clearance::io::quoted(text) + " is none of kinect, stereo:F,B,S, tof:C,S and lidar:C,S");
-  }
-  try {
-    sensor.check(0);
-  } catch (const std::invalid_argument& error) {
-    throw usage_error(option, without_prefix(error.what()));
-  }
-  return sensor;
-}
 constexpr const char* of_fields =
     "on (also without a value), off or auto (default): sample a table around each link first (1 MiB; up to seconds a "
     "link on a host, 5 ms on a GPU), once: the cache keeps it. Configurations take less time then, and every answer is "
@@ -110,66 +52,6 @@ void add_fields(CLI::App& app, raw_options& raw) {
          [&raw](const std::vector<std::string>& given) { raw.fields = given.empty() ? std::string() : given[0]; },
          of_fields)
       ->expected(0, 1);
-}
-
-/// Sets one per-cloud option, given on the command line.
-void set(cloud_options& cloud, const std::string& option, const std::string& text) {
-  if (option == "--camera-pose") cloud.pose = pose(option, text);
-  if (option == "--camera-link") cloud.link = text;
-  if (option == "--intrinsics") {
-    const auto v = numbers(option, text, 4, "fx,fy,cx,cy");
-    if (!(v[0] > 0 && v[1] > 0)) throw usage_error(option, "the focal lengths fx and fy must be above 0 (pixels)");
-    cloud.camera = clearance::intrinsics{v[0], v[1], v[2], v[3]};
-  }
-  if (option == "--depth-scale") {
-    cloud.scale = number(option, text);
-    if (!(cloud.scale > 0)) throw usage_error(option, "must be above 0 (metres per unit)");
-  }
-  if (option == "--range") {
-    const auto v = numbers(option, text, 2, "near,far", true);
-    if (!(v[0] >= 0 && v[0] < v[1])) throw usage_error(option, "needs 0 <= near < far (metres)");
-    cloud.nearest = v[0];
-    cloud.farthest = v[1];
-  }
-  if (option == "--sensor") cloud.sensor = sensor_of(option, text);
-  if (option == "--calibration") {
-    const auto v = numbers(option, text, 2, "DT,DTHETA");
-    if (!(v[0] >= 0 && v[0] <= 1e15 && v[1] >= 0 && v[1] <= 1e15))
-      throw usage_error(option, "needs 0 or more (metres, and radians)");
-    cloud.off.shift = v[0], cloud.off.turn = v[1];
-  }
-  if (option == "--use-viewpoint") cloud.use_viewpoint = true;
-  if (option == "--zero-is-missing") cloud.zero_is_missing = true;
-  if (cloud.file.empty()) cloud.given.push_back(option);
-  if (!cloud.file.empty() && !cloud.is_image() && std::ranges::count(for_images, option))
-    throw usage_error(option, "is for depth images, and " + cloud.file + " is none");
-  if (!cloud.file.empty() && cloud.is_image() && std::ranges::count(for_clouds, option))
-    throw usage_error(option, "is for point clouds, and " + cloud.file + " is a depth image");
-}
-
-/// Every option with its value, in the order of the command line.
-std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
-  std::vector<std::pair<std::string, std::string>> all;
-  std::map<const CLI::Option*, std::size_t> taken;
-  for (const CLI::Option* option : app.parse_order())
-    all.emplace_back(option->get_name(), option->results().at(taken[option]++));
-  return all;
-}
-
-/// The clouds in their order. An option before the first cloud goes to `all`, one after a cloud to that cloud.
-std::vector<cloud_options> clouds_of(const CLI::App& app, cloud_options& all) {
-  std::vector<cloud_options> clouds;
-  for (const auto& [name, text] : in_order(app)) {
-    if (name == "--cloud") {
-      clouds.push_back(all);
-      clouds.back().file = text;
-    } else {
-      set(clouds.empty() ? all : clouds.back(), name, text);
-    }
-  }
-  for (const auto& cloud : clouds) cloud.check("--cloud");
-  if (!clouds.empty()) check_all_clouds(all, clouds);
-  return clouds;
 }
 
 /// The objects that links hold; a pose belongs to the object before it.
@@ -233,22 +115,6 @@ std::vector<double> thresholds(const std::string& option, const std::string& tex
   return values;
 }
 
-/// Throws if --deadline is used with another question: it only works for the least distance.
-void check_alone(const query_options& o) {
-  const std::pair<const char*, bool> others[] = {{"--zones", !o.zones.empty()},
-                                                 {"--distances", !o.distances.empty()},
-                                                 {"--self-filter", o.self_filter.has_value()},
-                                                 {"--min-support", o.support.has_value()},
-                                                 {"what is uncertain (--sensor and others)", o.certain.has_value()},
-                                                 {"--unseen", o.unseen.has_value()},
-                                                 {"--nearest", o.nearest != 0},
-                                                 {"--gradient", o.gradient}};
-  for (const auto& [other, asked] : others)
-    if (asked)
-      throw usage_error("--deadline",
-                        std::string("is for the least distance alone, and cannot be mixed with ") + other);
-}
-
 /// How is asked: until when, and by which ranks.
 void read_deadline(const raw_options& raw, query_options& o) {
   if (!raw.deadline.empty()) {
@@ -256,19 +122,11 @@ void read_deadline(const raw_options& raw, query_options& o) {
     if (!(milliseconds >= 0 && milliseconds <= 1e9))
       throw usage_error("--deadline", "must be from 0 to 1e9 (milliseconds)");
     o.deadline = milliseconds + 0.0;  // no -0
-    check_alone(o);
     if (o.volume != usual_volume(o.model))
       throw usage_error("--volume", std::string("cannot be ") + to_string(o.volume) + " with --deadline, which has " +
                                         to_string(usual_volume(o.model)) + " for --model " + to_string(o.model));
   }
   o.shard = raw.shard;
-  if (o.shard && o.support)
-    throw usage_error("--shard",
-                      "cannot be mixed with --min-support: points of different ranks may confirm one another");
-  if (o.shard && o.unseen)
-    throw usage_error("--shard", "cannot be mixed with --unseen: what one camera hides another may see");
-  if (o.shard && o.deadline)
-    throw usage_error("--shard", "cannot be mixed with --deadline: ranks wait for one another");
 }
 
 /// What is uncertain about clouds and joints. It is for all clouds, but for --sensor and --calibration.
@@ -277,7 +135,7 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   if (!raw.delay.empty()) off.delay = amount("--delay", raw.delay, "seconds");
   const double speed = raw.max_speed.empty() ? 0 : amount("--max-speed", raw.max_speed, "m/s");
   const double later = raw.plan_time.empty() ? 0 : amount("--plan-time", raw.plan_time, "seconds");
-  const bool alone = !raw.configurations.empty(), planned = alone || !raw.plan.empty();
+  const bool alone = !raw.configurations.empty();
   const auto each = [](const char* option, const std::string& text) {
     std::vector<double> all;
     if (!text.empty()) all = numbers(option, text);
@@ -286,29 +144,9 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   off.errors = each("--joint-error", raw.joint_error), off.speeds = each("--joint-speed", raw.joint_speed);
   for (const double x : off.errors)
     if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
-  if (!raw.max_speed.empty() && raw.delay.empty())
-    throw usage_error("--max-speed", "needs --delay, the time in which things move");
-  if (!raw.max_speed.empty() && planned && raw.plan_time.empty())
-    throw usage_error("--max-speed", "needs --plan-time, the time until the plan ends, in which things move, too");
-  if (!raw.plan_time.empty() && !planned) throw usage_error("--plan-time", "is for --plan");
-  if (!raw.plan_time.empty() && raw.max_speed.empty())
-    throw usage_error("--plan-time", "needs --max-speed: what moves in that time?");
-  if (!raw.joint_speed.empty() && raw.delay.empty() && raw.stamps.empty())
-    throw usage_error("--joint-speed", "needs --delay, the time in which things move");
-  if (!raw.delay.empty() && raw.max_speed.empty() && raw.joint_speed.empty())
-    throw usage_error("--delay", "needs --max-speed or --joint-speed: what moves in that time?");
-  const std::pair<const char*, bool> given[] = {{"--sensor", !raw.sensors.empty()},
-                                                {"--calibration", !raw.calibrations.empty()},
-                                                {"--max-speed", !raw.max_speed.empty()},
-                                                {"--joint-error", !raw.joint_error.empty()},
-                                                {"--joint-speed", !raw.joint_speed.empty()}};
-  for (const auto& [option, is] : given) {
-    if (!is) continue;
-    if (o.recording.merge)
-      throw usage_error(option, "cannot be mixed with --merge: a merged cloud does not say what a point was seen from");
-    if (raw.shard) throw usage_error(option, "cannot be mixed with --shard");
+  if (!raw.sensors.empty() || !raw.calibrations.empty() || !raw.max_speed.empty() || !raw.joint_error.empty() ||
+      !raw.joint_speed.empty())
     o.certain = off;
-  }
   const auto set_age = [&](cloud_options& cloud) {
     cloud.off.max_speed = speed, cloud.off.age = off.delay + (alone ? later : 0), cloud.later = alone ? 0 : later;
   };
@@ -334,42 +172,27 @@ void read_questions(const raw_options& raw, query_options& o) {
       throw usage_error("--check", "must not be negative (metres): the lower end is 0 in a collision, too");
   }
   if (!raw.zones.empty()) o.zones = thresholds("--zones", raw.zones);
-  if (!raw.min_points.empty()) {
-    o.min_points = whole_number("--min-points", raw.min_points);
-    if (o.zones.empty()) throw usage_error("--min-points", "is for --zones");
-  }
+  if (!raw.min_points.empty()) o.min_points = whole_number("--min-points", raw.min_points);
   o.distances = raw.distances;
   if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
     throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
   o.is_signed = raw.is_signed;
-  if (o.is_signed && o.distances.empty()) throw usage_error("--signed", "is for --distances");
   if (o.is_signed && o.model != model_kind::triangles)
     throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
   if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);
   if (!raw.self_filter.empty()) o.self_filter = length("--self-filter", raw.self_filter);
-  if (o.self_filter && o.recording.merge)
-    throw usage_error("--self-filter",
-                      "cannot be mixed with --merge: the robot was elsewhere when the other frames were seen");
   if (!raw.min_support.empty()) o.support = support_of("--min-support", raw.min_support);
   if (raw.unseen) {
     o.unseen = room_of("--unseen", *raw.unseen);
     for (const cloud_options& cloud : o.clouds) cloud.check_hides();
-    if (o.recording.merge)
-      throw usage_error("--merge", "cannot be mixed with --unseen: a merged cloud does not say what was hidden");
   }
-  if (!raw.support_limit.empty()) {
-    if (!o.support) throw usage_error("--support-limit", "is for --min-support");
-    o.support->most = whole_number("--support-limit", raw.support_limit, most_listed);
-  }
+  if (!raw.support_limit.empty()) o.support->most = whole_number("--support-limit", raw.support_limit, most_listed);
   o.gradient = raw.gradient;
   o.configurations = raw.configurations;
   o.csv = raw.csv;
   o.between = raw.between;
-  if (o.between && !o.attached.empty())
-    throw usage_error("--between", "cannot be mixed with --attach: how what is held moves is not bounded yet");
   o.recording.plan = raw.plan;
   if (raw.fields) {
-    if (!o.plans()) throw usage_error("--fields", "is for --plan");
     const std::size_t how = raw.fields->empty() ? 0 : choice("--fields", *raw.fields, {"on", "off", "auto"});
     if (how != 2) o.fields = how == 0;
   }
@@ -385,8 +208,6 @@ void read_questions(const raw_options& raw, query_options& o) {
     o.d_max = number("--d-max", raw.d_max);
     if (!(o.d_max > 0)) throw usage_error("--d-max", "must be above 0 (metres)");
     if (!(o.d_max >= 1e-30 && o.d_max <= 1e30)) throw usage_error("--d-max", "must be from 1e-30 to 1e30 (metres)");
-    if (o.distances.empty() && o.nearest == 0 && o.configurations.empty())
-      throw usage_error("--d-max", "is for --distances and --nearest");
     if (!o.configurations.empty() && o.margin && !(o.d_max > *o.margin))
       throw usage_error("--d-max", "must be above the margin of --check, or nothing could pass");
   }
@@ -406,7 +227,10 @@ std::uint64_t bytes_each(const query_options& o) {
 }
 
 query_options read(const CLI::App& app, const raw_options& raw) {
+  check_given_once(app);
   query_options o;
+  o.notes = check_together(app);
+  o.alike = given_alike(app);
   o.robot = raw.robot;
   if (!raw.joints.empty()) o.joints = numbers("--joints", raw.joints);
   for (const auto& text : raw.joint) {
@@ -419,7 +243,8 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.ignore_limits = raw.ignore_limits;
   o.strict = raw.strict;
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
-  for (const auto& text : raw.packages) o.packages.push_back(assignment("--package", text, "name=DIR"));
+  o.packages = packages_of(raw.packages);
+  o.gltf_up = gltf_axis_of(raw.gltf_up);
   o.limits = limits_of(raw.mesh_limits);
   if (!raw.base.empty()) o.base = pose("--base-pose", raw.base);
   if (!raw.unfolded.empty())
@@ -429,10 +254,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.recording.frames = raw.frames;
   o.recording.trajectory = raw.trajectory;
   o.recording.stamps = raw.stamps;
-  if (!raw.max_age.empty()) {
-    if (raw.stamps.empty()) throw usage_error("--max-age", "is for --stamps");
-    o.recording.max_age = amount("--max-age", raw.max_age, "seconds");
-  }
+  if (!raw.max_age.empty()) o.recording.max_age = amount("--max-age", raw.max_age, "seconds");
   o.recording.merge = raw.merge;
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
   o.volume = usual_volume(o.model);
@@ -457,9 +279,10 @@ query_options read(const CLI::App& app, const raw_options& raw) {
 /// The options of the robot and its models.
 void add_robot_options(CLI::App& app, raw_options& raw) {
   app.add_flag("--ignore-limits", raw.ignore_limits, "Accept joint positions outside their limits");
-  app.add_option("--geometry", raw.geometry, "visual or collision (default; visual where a link has no collision)");
+  app.add_option("--geometry", raw.geometry, geometry_says);
   app.add_flag("--strict", raw.strict, "Refuse of the robot's description what would get a note");
-  app.add_option("--package", raw.packages, "name=DIR: where package://name/ is");
+  app.add_option("--package", raw.packages, package_says);
+  app.add_option("--gltf-up", raw.gltf_up, gltf_up_says);
   app.add_option("--mesh-limit", raw.mesh_limits, mesh_limit_says());
   app.add_option("--base-pose", raw.base,
                  "x,y,z,qx,qy,qz,qw: world-from-base (m; default: the base is at the world's origin)");
@@ -520,6 +343,8 @@ void add_cloud_options(CLI::App& app, raw_options& raw, asking how) {
       std::string("The link that carries the camera") + (planned ? ", where it is in the first configuration" : ""));
   app.add_option("--intrinsics", raw.cameras, "fx,fy,cx,cy of a depth image, pixels");
   app.add_option("--depth-scale", raw.scales, "Metres per unit of a depth image (default 0.001)");
+  app.add_option("--cloud-scale", raw.cloud_scales,
+                 "Metres per unit of a point cloud (default 1; Zivid's and ZED's millimetres: 0.001)");
   app.add_option("--range", raw.ranges,
                  "near,far: other points do not count (m; along z for images, else from the sensor)");
   app.add_option(
@@ -577,7 +402,8 @@ void add_model_options(CLI::App& app, raw_options& raw, asking how) {
 }
 
 const char* const of_clouds =
-    "--camera-pose, --camera-link, --intrinsics, --depth-scale, --range, --sensor, --calibration, --use-viewpoint and\n"
+    "--camera-pose, --camera-link, --intrinsics, --depth-scale, --cloud-scale, --range, --sensor, --calibration, "
+    "--use-viewpoint and\n"
     "--zero-is-missing hold "
     "for all clouds if given before the first --cloud, else for the --cloud before them.";
 
@@ -678,20 +504,11 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
 }  // namespace
 
 field_use uses_fields(const query_options& asked, std::size_t configurations) {
-  // docs/cpu-runs/2026-11-26-xeon-fields, docs/cpu-runs/2026-11-26-kept-fields
+  // bench/records/xeon/fields_pay.txt, bench/records/epyc/kept_fields.txt
   constexpr std::size_t sampling_pays_from = 100'000, reading_pays_from[] = {100, 10'000};
   if (asked.fields) return *asked.fields ? field_use::always : field_use::none;
   if (asked.d_max < clearance::infinity || configurations < reading_pays_from[asked.on_device]) return field_use::none;
   return configurations < sampling_pays_from ? field_use::if_cached : field_use::always;
-}
-
-std::string questions_of(const query_options& asked) {
-  std::ostringstream all;
-  all << std::hexfloat << to_string(asked.model) << !asked.configurations.empty() << ' '
-      << asked.self_filter.value_or(-1) << ' ' << asked.min_points << ' ' << asked.nearest << ' ' << asked.d_max << ' '
-      << asked.gradient << !asked.distances.empty() << asked.is_signed << asked.between << asked.margin.value_or(-1);
-  for (const double threshold : asked.zones) all << ' ' << threshold;
-  return all.str();
 }
 
 std::function<query_options()> add_query_options(CLI::App& app, asking how) {

@@ -5,10 +5,13 @@
 
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
+#include <clearance/io/mesh_gltf.hpp>
 #include <clearance/points/hidden.hpp>
 
 #include <Eigen/Geometry>
 
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +28,9 @@ struct cloud_options {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-cloud, or link-from-cloud
   std::string link;                                        // empty: the world
   std::optional<clearance::intrinsics> camera;
-  double scale = 0.001;
+  bool shares_camera = false;  // given before the first --cloud, for all images
+  double scale = 0.001;        // --depth-scale
+  double cloud_scale = 1;      // --cloud-scale
   double nearest = 0, farthest = clearance::infinity;
   bool use_viewpoint = false, zero_is_missing = false;
   clearance::any_noise sensor = {};       // --sensor
@@ -82,7 +87,8 @@ struct query_options {
   std::vector<std::pair<std::string, double>> joint;  // by name
   bool ignore_limits = false, strict = false;
   std::optional<bool> visual;  // --geometry
-  std::vector<std::pair<std::string, std::string>> packages;
+  std::map<std::string, std::filesystem::path> packages;
+  std::optional<clearance::io::gltf_axis> gltf_up;  // --gltf-up
   clearance::io::mesh_limits limits;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
   std::vector<cloud_options> clouds;
@@ -116,6 +122,8 @@ struct query_options {
   bool between = false;            // for `clearance plan`
   std::optional<bool> fields;      // for `clearance plan` and the plan of `clearance run`; auto: not given
   recording_options recording;     // for `clearance run`
+  std::vector<std::string> notes;  // about options that are given together
+  std::vector<std::pair<std::string, std::string>> alike;  // for --shard: what ranks must be given alike, by name
 
   bool plans() const { return !configurations.empty() || !recording.plan.empty(); }
 };
@@ -125,9 +133,6 @@ struct query_options {
 field_use uses_fields(const query_options& asked, std::size_t configurations);
 
 enum class asking { query, run, plan };
-
-/// What ranks must be asked alike, as a text; poses and clouds are not in it.
-std::string questions_of(const query_options& asked);
 
 /// Declares a subcommand's options; the returned function reads them after parsing. Throws usage_error.
 std::function<query_options()> add_query_options(CLI::App& app, asking how);

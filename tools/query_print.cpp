@@ -18,7 +18,8 @@ json part_of(const query_report& report, std::size_t k) {
                {"point", found ? json(m.point) : json(nullptr)},
                {"primitive", found && m.primitive != none ? json(m.primitive) : json(nullptr)},
                {"caps", {{"loops", made.closed.caps.loops}, {"area", made.closed.caps.area}}},
-               {"inside", made.closed.loaded != 0 ? json(to_string(made.closed.inside)) : json(nullptr)}};
+               {"inside", made.closed.loaded != 0 ? json(to_string(made.closed.inside)) : json(nullptr)},
+               {"tolerance", tolerance_of(made, report.asked->model)}};
   if (report.asked->model == model_kind::spheres) part["gap"] = or_null(made.packed.gap);
   if (const attached_thing* held = report.robot->held_as(k))
     part["attached"] = {{"link", held->from.link}, {"file", held->from.file}, {"pose", pose_of(held->from.pose)}};
@@ -38,15 +39,6 @@ json distances_of(const query_report& report) {
           {"signed", report.asked->is_signed || report.asked->model == model_kind::spheres},
           {"d_max", or_null(report.asked->d_max)},
           {"blue_at", report.distances->blue_at}};
-}
-
-json about_cloud(const observation& cloud) {
-  json one = {{"file", cloud.from.file}, {"name", cloud.name}, {"points", cloud.size()}, {"viewpoint", nullptr}};
-  if (cloud.points() && cloud.points()->viewpoint) {
-    const auto& [t, q] = *cloud.points()->viewpoint;
-    one["viewpoint"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
-  }
-  return one;
 }
 
 /// Where there is a valid point: the state, and the nearest point with its place on the robot.
@@ -93,6 +85,7 @@ std::string part_text(const query_report& report, std::size_t k) {
   out += m.point == none ? "         -" : text("%10.6f m, point %u", double(m.distance), m.point);
   if (m.point != none && report.clouds->size() > 1) out += " of " + io::printable((*report.clouds)[m.cloud].name);
   if (report.asked->model == model_kind::spheres) out += text(", gap %.4f m", made.packed.gap);
+  if (const double off = tolerance_of(made, report.asked->model); off > 0) out += text(", to within %.6f m", off);
   if (const attached_thing* held = report.robot->held_as(k)) out += ", held by link " + io::printable(held->from.link);
   if (made.closed.caps.loops != 0)
     out += text(", %u holes closed (%.2g m2)", made.closed.caps.loops, made.closed.caps.area);

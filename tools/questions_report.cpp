@@ -39,7 +39,7 @@ json nearest_of(const query_report& report, std::size_t part) {
     json one = place(report, pair.cloud, pair.point);
     const auto at = pixel((*report.clouds)[pair.cloud], pair.point);
     one["pixel"] = at ? json{at->first, at->second} : json(nullptr);
-    one["distance"] = or_null(pair.distance), one["lower"] = report.nearest->certain.lower(pair.distance);
+    one["distance"] = or_null(pair.distance), one["lower"] = report.nearest->certain.lower(pair);
     one["primitive"] = pair.primitive == none ? json(nullptr) : json(pair.primitive);
     all.push_back(std::move(one));
   }
@@ -60,12 +60,6 @@ json gradient_of(const query_report& report, std::size_t part) {
   if (g.of_joints)
     for (std::size_t i = 0; i < tree.size(); ++i) out["joints"][tree.movable(i).name] = (*g.of_joints)[Eigen::Index(i)];
   return out;
-}
-
-json pose_of(const Eigen::Isometry3d& pose) {
-  const Eigen::Vector3d t = pose.translation();
-  const Eigen::Quaterniond q(pose.linear());
-  return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
 namespace {
@@ -157,7 +151,7 @@ std::string nearest_text(const query_report& report) {
       if (pair.point == none) break;
       out += name_column(listed++ == 0 ? name : "");
       out += text("%.6f m, certainly at least %.6f m: point %u", double(pair.distance),
-                  double(report.nearest->certain.lower(pair.distance)), pair.point);
+                  double(report.nearest->certain.lower(pair)), pair.point);
       out += (report.clouds->size() > 1 ? " of " + io::printable((*report.clouds)[pair.cloud].name) : "") + '\n';
     }
     if (listed == 0) out += name_column(name) + "none\n";

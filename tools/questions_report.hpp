@@ -11,9 +11,6 @@ json zones_of(const query_report& report, std::size_t part);
 json nearest_of(const query_report& report, std::size_t part);
 json gradient_of(const query_report& report, std::size_t part);
 
-/// x,y,z,qx,qy,qz,qw.
-json pose_of(const Eigen::Isometry3d& pose);
-
 /// For the whole robot: each answer becomes an object named after its question.
 void add_questions(const query_report& report, json& out);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ranks.hpp"
 
+#include "robot_bodies.hpp"
 #include "stopwatch.hpp"
 
 #include <clearance/io/digest.hpp>
@@ -9,6 +10,7 @@
 #include <clearance/mpi/ranks.hpp>
 #include <clearance/points/sharded.hpp>
 #include <clearance/query/pieces.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
@@ -47,6 +49,39 @@ struct joined_witnesses {
   std::vector<part_witness> result() { return std::move(all); }
 };
 
+/// Of what decides every distance to the robot, but for its poses.
+io::digest digest_of(const std::vector<body>& bodies) {
+  io::byte_writer all;
+  for (const body& its : bodies) {
+    all.put(its.name), all.put(its.tolerance), all.put(its.packed.gap), all.put(its.packed.tolerance);
+    for (const std::uint8_t b : io::digest_of(its.closed).bytes) all.put(b);
+    for (const inner_sphere& s : its.packed.spheres) {
+      for (const real x : {s.center.x, s.center.y, s.center.z, s.radius}) all.put(x);
+    }
+  }
+  return io::digest_of(all.bytes());
+}
+
+/// Of a cloud's records, of which of them count, and of its pose.
+template <class S>
+io::digest digest_of(const S& cloud, const Eigen::Isometry3d& pose) {
+  io::byte_writer all;
+  const auto records = cloud.bytes();
+  for (const std::uint8_t b :
+       io::digest_of(std::string_view(reinterpret_cast<const char*>(records.data()), records.size())).bytes)
+    all.put(b);
+  for (const double x : pose.matrix().reshaped()) all.put(x);
+  if constexpr (requires { cloud.filter; }) {
+    all.put(double(cloud.filter.nearest)), all.put(double(cloud.filter.farthest));
+  } else {
+    for (const real x :
+         {cloud.inverse_fx, cloud.inverse_fy, cloud.cx, cloud.cy, cloud.scale, cloud.nearest, cloud.farthest})
+      all.put(double(x));
+    all.put(std::uint64_t(cloud.width)), all.put(std::uint64_t(cloud.height));
+  }
+  return io::digest_of(all.bytes());
+}
+
 class mpi_ranks final : public all_ranks {
  public:
   mpi_ranks() {
@@ -63,7 +98,7 @@ class mpi_ranks final : public all_ranks {
   bool speaks() const override { return rank_ == 0; }
 
   std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                          const std::string& questions) override;
+                                          const named_values& options) override;
 
   void part() override {
     meet({});
@@ -102,17 +137,20 @@ class mpi_ranks final : public all_ranks {
 class robot_of_ranks final : public backend_robot {
  public:
   robot_of_ranks(mpi_ranks& all, std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                 const std::string& questions)
-      : all_(all), mine_(std::move(mine)), asked_(asked), questions_(questions) {}
+                 const named_values& options)
+      : all_(all), mine_(std::move(mine)), asked_(asked) {
+    for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
+    alike_.push_back({"robot", digest_of(*asked.bodies)});
+  }
 
   double see(const std::vector<seen_points>& clouds) override {
     std::vector<seen_points> shares;
     share_.clear(), first_.clear();
-    std::string sizes;
+    std::vector<std::pair<std::string, io::digest>> seen;
     for (const seen_points& cloud : clouds) {
       std::visit(
           [&](const auto& source) {
-            sizes += ' ' + std::to_string(source.size());
+            seen.push_back({"cloud " + std::to_string(share_.size()), digest_of(source, cloud.pose)});
             take_share(source);
           },
           cloud.points);
@@ -124,22 +162,34 @@ class robot_of_ranks final : public backend_robot {
           share_.back());
     }
     all_.at_once([&](mpi::together& here) {
-      here.agree(asked_.bodies->size(), {}, share_);
-      const io::digest mine = io::digest_of(questions_ + sizes);
-      const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, int(all_.ranks()), &mine, 1);
-      for (std::size_t r = 1; r < each.size(); ++r)
-        if (each[r] != each[0])
-          throw std::invalid_argument("rank " + std::to_string(r) +
-                                      " has other questions than rank 0, or clouds of other sizes");
+      auto anywhere = share_;  // poses are compared below, where an option's name is said
+      for (auto& its : anywhere) std::visit([](auto& mine) { mine.pose = Eigen::Isometry3d::Identity(); }, its);
+      here.agree(asked_.bodies->size(), {}, anywhere);  // the first step of all, also of one that has failed
+      compare(alike_);
+      compare(seen);
     });
     return mine_->see(shares);
+  }
+  /// Throws on every rank if one has something else than rank 0. All have as many.
+  void compare(const std::vector<std::pair<std::string, io::digest>>& alike) const {
+    std::vector<io::digest> mine;
+    for (const auto& its : alike) mine.push_back(its.second);
+    const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, int(all_.ranks()), mine.data(), mine.size());
+    for (std::size_t i = 0; i < each.size(); ++i)
+      if (const std::size_t k = i % mine.size(); each[i] != each[k])
+        throw std::invalid_argument("rank " + std::to_string(i / mine.size()) + " has another " + alike[k].first +
+                                    " than rank 0");
   }
 
   reply least(poses_of) override { none_of_ranks(); }
   reply least_by(poses_of, double) override { none_of_ranks(); }
   supported_distance supported(poses_of, const min_distance_supported&) override { none_of_ranks(); }
   certain_distance_result certain(poses_of, std::span<const part_radius>) override { none_of_ranks(); }
-  unseen_result unseen(poses_of, const clearance::unseen&) override { none_of_ranks(); }
+  unseen_result unseen(poses_of, const clearance::unseen&, bool) override { none_of_ranks(); }
+  std::vector<motion_clearance_result> hidden_ways(std::span<const io::joint_motion>, const motion_clearance_options&,
+                                                   const clearance::unseen&) override {
+    none_of_ranks();
+  }
 
   reply least_per_part(poses_of poses, int repeat) override {
     const auto found = joined<min_distance_per_part>(poses, [&] {
@@ -221,9 +271,9 @@ class robot_of_ranks final : public backend_robot {
   mpi_ranks& all_;
   std::unique_ptr<backend_robot> mine_;
   asked_model asked_;
-  std::string questions_;
-  std::vector<placed_points> share_;  // of each cloud,
-  std::vector<std::size_t> first_;    // and the number of its first point
+  std::vector<std::pair<std::string, io::digest>> alike_;  // what all ranks must have: its name, and its value
+  std::vector<placed_points> share_;                       // of each cloud,
+  std::vector<std::size_t> first_;                         // and the number of its first point
 };
 
 std::vector<motion_clearance_result> robot_of_ranks::ways(std::span<const io::joint_motion> ways,
@@ -242,8 +292,8 @@ std::vector<motion_clearance_result> robot_of_ranks::ways(std::span<const io::jo
 }
 
 std::unique_ptr<backend_robot> mpi_ranks::together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                                   const std::string& questions) {
-  return std::make_unique<robot_of_ranks>(*this, std::move(mine), asked, questions);
+                                                   const named_values& options) {
+  return std::make_unique<robot_of_ranks>(*this, std::move(mine), asked, options);
 }
 
 }  // namespace

@@ -5,6 +5,11 @@
 #include "backends.hpp"
 
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+using named_values = std::vector<std::pair<std::string, std::string>>;
 
 /// All ranks, as this one sees them.
 class all_ranks {
@@ -16,10 +21,10 @@ class all_ranks {
 
   /// The robot of all ranks. All show it the same clouds, and ask it the same in the same order; each has its own
   /// robot, `mine`, asked about its share of each cloud's points: a contiguous piece, but a whole image goes to one
-  /// rank. All get the answer about all points. It throws on all ranks if they differ in clouds, poses or `questions`,
-  /// a text.
+  /// rank. All get the answer about all points. It throws on all ranks if they differ in robot, clouds, poses or
+  /// `options`, which have names and values.
   virtual std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                                  const std::string& questions) = 0;
+                                                  const named_values& options) = 0;
 
   /// Each rank calls this after its last question. It waits until all have their answers.
   virtual void part() = 0;

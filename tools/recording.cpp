@@ -6,6 +6,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/io/text_file.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/unseen.hpp>
 
@@ -26,17 +27,50 @@ std::string_view trimmed(std::string_view text) {
 
 constexpr const char* time_column = "time";
 
+/// The words between commas; a word in quotes may have commas, and "" for a quote.
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  for (bool more = !trimmed(line).empty(); more;) {
+    std::size_t comma = line.find(',');
+    if (const std::size_t first = line.find_first_not_of(" \t"); first != line.npos && line[first] == '"') {
+      std::string word;
+      std::size_t at = first + 1;
+      for (; at < line.size() && (line[at] != '"' || (at + 1 < line.size() && line[at + 1] == '"')); ++at)
+        word += line[at], at += line[at] == '"' ? 1 : 0;
+      comma = line.find(',', std::min(at, line.size()));
+      const std::string_view after = line.substr(std::min(at + 1, line.size()));
+      if (at < line.size() && trimmed(after.substr(0, after.find(','))).empty()) {
+        words.push_back(word);
+        more = comma != line.npos;
+        line.remove_prefix(more ? comma + 1 : line.size());
+        continue;
+      }
+      comma = line.find(',');
+    }
+    words.emplace_back(trimmed(line.substr(0, comma)));
+    more = comma != line.npos;
+    line.remove_prefix(more ? comma + 1 : line.size());
+  }
+  return words;
+}
+
+/// A line whose words are not in quotes.
+std::string without_quotes(const std::string& line) {
+  if (line.find('"') == line.npos) return line;
+  std::string plain;
+  for (const std::string& word : words_of(line)) plain += (plain.empty() ? "" : ",") + word;
+  return plain;
+}
+
 /// The names in the first line. Each must be a joint that takes a value, named only once and not in `fixed`; and
 /// "time", if `timed`.
 std::vector<std::string> columns(const std::string& file, std::string_view line, const io::kinematic_tree& tree,
                                  const std::map<std::string, double>& fixed, bool timed) {
   std::vector<std::string> names;
   std::map<std::string, double> values = fixed;
-  for (bool more = !trimmed(line).empty(); more;) {
-    const std::size_t comma = line.find(',');
-    const std::string name(trimmed(line.substr(0, comma)));
-    more = comma != line.npos;
-    line.remove_prefix(more ? comma + 1 : line.size());
+  for (const std::string& name : words_of(line)) {
+    if (io::printable(name) != name)  // a zero byte would end the sentence of whoever refuses it
+      io::refuse(file, "has a column named " + io::quoted(name) + ", and no joint has such a name", 1);
     if (timed && name == time_column) {
       if (std::ranges::count(names, name)) io::refuse(file, "has two columns named time", 1);
       names.push_back(name);
@@ -73,27 +107,82 @@ void check_frame(const std::string& file) {
   io::refuse(file, std::string(what) + ", but is named like a frame of the recording");
 }
 
+/// Is it a single frame by its name? A .txt may be a list of frames.
+bool is_frame(const std::string& file) {
+  const std::string end = io::extension(file);
+  return end == ".pcd" || end == ".ply" || end == ".xyz" || end == ".png";
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// By bytes, but numbers by their values: frame9 before frame10.
+bool comes_before(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i, ++j;
+      continue;
+    }
+    const auto take = [](const std::string& text, std::size_t& at) {
+      while (at + 1 < text.size() && text[at] == '0' && is_digit(text[at + 1])) ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return std::string_view(text).substr(begin, at - begin);
+    };
+    const std::string_view x = take(a, i), y = take(b, j);
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+  }
+  const std::size_t rest = a.size() - i, others = b.size() - j;
+  return rest != others ? rest < others : a < b;
+}
+
 }  // namespace
 
-std::vector<std::string> list_frames(const std::string& where) {
-  std::vector<std::string> files;
+std::vector<std::string> list_frames(const std::string& where, std::vector<std::string>& notes) {
+  std::vector<std::string> files, others;
   if (fs::is_directory(where)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
-      const std::string end = io::extension(entry.path().string());
-      if (end != ".pcd" && end != ".ply" && end != ".xyz" && end != ".txt" && end != ".png") continue;
-      files.push_back(entry.path().string());
-      check_frame(files.back());
+      const std::string file = entry.path().string(), name = entry.path().filename().string();
+      if (is_frame(file) || io::extension(file) == ".txt") {
+        files.push_back(file);
+        check_frame(file);
+      } else if (std::error_code failed; !name.starts_with('.') && !entry.is_directory(failed)) {
+        others.push_back(name);
+      }
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files, comes_before), std::ranges::sort(others, comes_before);
+    const std::size_t all = files.size() + others.size();
     if (files.empty()) io::refuse(where, "has no frame: no file .pcd, .ply, .xyz, .txt or .png");
+    if (!others.empty())
+      notes.push_back(where + ": " + std::to_string(others.size()) + " of its " + std::to_string(all) +
+                      " files are not named like frames (.pcd, .ply, .xyz, .txt, .png) and are left out, " +
+                      io::quoted(others[0]) + (others.size() > 1 ? " first" : ""));
     return files;
   }
-  const std::string bytes = io::read_bytes(where);
+  if (is_frame(where)) return {where};
+  const std::string bytes = io::as_utf8(io::read_bytes(where), where);
   for (std::string_view rest = io::without_mark(bytes); !rest.empty();)
-    if (const std::string_view path = trimmed(io::take_line(rest)); !path.empty())
+    if (const std::string_view path = trimmed(io::take_line(rest)); !path.empty()) {
       files.push_back((fs::path(where).parent_path() / path).string());
+      if (files.size() == 1 && !fs::exists(files[0]) && io::number<double>(path.substr(0, path.find_first_of(" ,\t"))))
+        io::refuse(where, "lists numbers, not frames: a file that is a frame itself must be named .xyz", 1);
+    }
   if (files.empty()) io::refuse(where, "lists no frame");
   return files;
+}
+
+std::vector<std::string> joints_named(const query_options& asked) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : asked.joint) names.push_back(name);
+  for (const std::string& file : {asked.recording.trajectory, asked.recording.plan, asked.configurations}) {
+    if (file.empty()) continue;
+    const std::string bytes = io::as_utf8(io::read_bytes(file), file);
+    std::string_view rest = io::without_mark(bytes);
+    std::ranges::copy(words_of(io::take_line(rest)), std::back_inserter(names));
+  }
+  return names;
 }
 
 std::vector<std::vector<double>> read_trajectory(const std::string& file, const io::kinematic_tree& tree,
@@ -106,7 +195,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
                                               " has no value (--joint name=value fixes it)");
     return {tree.configuration(fixed, limits)};
   }
-  const std::string bytes = io::read_bytes(file);
+  const std::string bytes = io::as_utf8(io::read_bytes(file), file);
   std::string_view rest = io::without_mark(bytes);
   const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed, times != nullptr);
   rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
@@ -118,7 +207,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const std::string text(io::take_line(rest));
     const std::string where = file + ':' + std::to_string(line);
-    const auto row = numbers(where, text, names.size(), "one a column");
+    const auto row = numbers(where, without_quotes(text), names.size(), "one a column");
     std::map<std::string, double> values = fixed;
     for (std::size_t i = 0; i < names.size(); ++i)
       times&& names[i] == time_column ? times->push_back(row[i]) : void(values[names[i]] = row[i]);
@@ -150,7 +239,7 @@ std::vector<stamped_row> read_stamped_rows(const query_options& asked, const io:
     } catch (const std::invalid_argument& error) {
       io::refuse(from.trajectory, error.what(), k + 2);
     }
-  const std::string bytes = io::read_bytes(from.stamps);
+  const std::string bytes = io::as_utf8(io::read_bytes(from.stamps), from.stamps);
   std::string_view rest = io::without_mark(bytes);
   rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
   std::vector<stamped_row> found;
@@ -226,11 +315,11 @@ std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_row
 }
 
 std::vector<unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows, const clearance::unseen& q,
-                                           std::size_t links, double& query) {
+                                           std::size_t links, bool until_end, double& query) {
   std::vector<unseen_result> all;
   rows.for_each_block([&](poses_of poses) {
     for (std::size_t first = 0; first < poses.size(); first += links) {
-      all.push_back(there.unseen(poses.subspan(first, links), q));
+      all.push_back(there.unseen(poses.subspan(first, links), q, until_end));
       all.back().parts = {};  // a plan may have many rows
       query += there.query;
     }

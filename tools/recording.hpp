@@ -11,8 +11,12 @@
 #include <string>
 #include <vector>
 
-/// The frames in a folder, sorted by name, or those listed in a text file, relative to it. At least one.
-std::vector<std::string> list_frames(const std::string& where);
+/// The frames in a folder, by name and by the numbers in their names (9 before 10); those listed in a text file,
+/// relative to it; or one that is a frame itself. At least one. A note says what is left out.
+std::vector<std::string> list_frames(const std::string& where, std::vector<std::string>& notes);
+
+/// The joints that the command line names: of --joint, and of the columns of all files of joints.
+std::vector<std::string> joints_named(const query_options& asked);
 
 /// One configuration per row. Every movable joint has a column or a value in `fixed`. If all are fixed, there is one
 /// row, and the file has no columns or no name (empty). `times`: one for each row, of a column named time.
@@ -76,9 +80,11 @@ struct certain_row {
 /// Of all rows, about all places where points and parts may be.
 std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_rows& rows, double d_max,
                                           const std::vector<double>& radii, double& query);
-/// How far each row, of so many links, is from what the clouds hide; nothing about single links.
+/// How far each row, of so many links, is from what the clouds hide (`until_end`: or may hide until the plan ends);
+/// nothing about single links.
 std::vector<clearance::unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows,
-                                                      const clearance::unseen& q, std::size_t links, double& query);
+                                                      const clearance::unseen& q, std::size_t links, bool until_end,
+                                                      double& query);
 
 /// The clouds of many frames as one, in the world. Invalid points keep their places as NaN.
 class merged_cloud {

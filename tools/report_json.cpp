@@ -42,3 +42,23 @@ json counts(const min_distance_result& r) {
   for (int k = 1; k < drop_reasons; ++k) dropped[reasons[k]] = r.dropped[k];
   return {{"seen", r.seen}, {"valid", r.valid}, {"dropped", dropped}};
 }
+
+json pose_of(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d t = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+json about_cloud(const observation& cloud) {
+  json one = {{"file", cloud.from.file},
+              {"name", cloud.name},
+              {"points", cloud.size()},
+              {"pose", pose_of(cloud.from.pose)},
+              {"link", cloud.from.link.empty() ? json(nullptr) : json(cloud.from.link)},
+              {"viewpoint", nullptr}};
+  if (cloud.points() && cloud.points()->viewpoint) {
+    const auto& [t, q] = *cloud.points()->viewpoint;
+    one["viewpoint"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+  }
+  return one;
+}

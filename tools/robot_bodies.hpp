@@ -17,5 +17,10 @@ inline std::vector<body> make_bodies(const std::vector<body_source>& sources, bo
   return clearance::io::make_bodies(sources, options, account);
 }
 
+/// How far the true surface may be from the model's, or may enclose other room, in metres.
+inline double tolerance_of(const body& made, model_kind model) {
+  return made.tolerance + (model == model_kind::spheres ? made.packed.tolerance : made.closed.tolerance);
+}
+
 /// The cache according to --no-cache and --cache; by default the usual one.
 clearance::io::packing_cache chosen_cache(bool none, const std::string& folder);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_clouds.hpp"
 #include "asked_robot.hpp"
+#include "camera_checks.hpp"
 #include "clearance_svg.hpp"
 #include "command_line.hpp"
 #include "filter_report.hpp"
 #include "frame_report.hpp"
 #include "messages.hpp"
 #include "recording.hpp"
+#include "scale_notes.hpp"
 
 #include <clearance/io/write_file.hpp>
 
@@ -93,14 +95,16 @@ class motion {
 /// The frames' files, which are read one at a time.
 class frame_files {
  public:
-  frame_files(const query_options& asked, progress& shown) : asked_(asked.recording), shown_(shown) {
-    for (const std::string& file : list_frames(asked_.frames)) {
+  frame_files(const query_options& asked, progress& shown, std::vector<std::string>& notes)
+      : asked_(asked.recording), shown_(shown) {
+    for (const std::string& file : list_frames(asked_.frames, notes)) {
       files_.push_back(asked_.camera);
       files_.back().file = file;
       files_.back().check("--frames");
       if (asked.unseen) files_.back().check_hides();
     }
     check_all_clouds(asked_.camera, files_);
+    check_image_sizes(files_);
   }
 
   std::size_t size() const { return files_.size(); }
@@ -110,6 +114,7 @@ class frame_files {
     shown_.show("frame " + std::to_string(frame + 1) + '/' + std::to_string(size()));
     if (!asked_.merge) names_.clear();  // the line names its frame
     observation found = observe(files_[frame], names_);
+    if (frame == 0) note_camera(found, found.notes);  // the others are as large
     print(found.notes, shown_);
     return found;
   }
@@ -142,14 +147,20 @@ class waypoints {
 
   std::size_t size() const { return rows_.size(); }
 
-  std::optional<plan_report> ask(backend_robot& there) {
+  /// `clouds`: what the backend was shown last, unless they are merged.
+  std::optional<plan_report> ask(backend_robot& there, const std::vector<observation>& clouds,
+                                 const std::vector<body>& bodies) {
     if (!placed_) return std::nullopt;
-    plan_report plan{.asked = &asked_};
+    plan_report plan{.asked = &asked_, .clouds = &clouds, .bodies = &bodies};
     plan.found = ask_plan(there, *placed_, infinity, plan.query);
     if (asked_.certain) {
       if (!radii_) radii_ = radii_in_rows(asked_, robot_, rows_, there.facts());
       plan.certain = ask_certain_plan(there, *placed_, infinity, *radii_, plan.query);
     }
+    if (asked_.unseen)
+      plan.unseen =
+          ask_plan_unseen(there, *placed_, {.room = *asked_.unseen, .radii = radii_.value_or(std::vector<double>())},
+                          bodies.size(), true, plan.query);
     return plan;
   }
 
@@ -182,7 +193,7 @@ int run_frames(const query_options& asked) {
   io::files_read inputs;
   std::vector<std::string> notes;
   const asked_robot robot = load_robot(asked, notes);
-  frame_files frames(asked, shown);
+  frame_files frames(asked, shown, notes);
   const motion moves(asked, robot);
   moves.check(frames.size());
   waypoints to_come(asked, robot);
@@ -229,15 +240,16 @@ int run_frames(const query_options& asked) {
     std::optional<unseen_result> unseen;
     if (asked.unseen) {
       unseen = own ? std::move(own->unseen)
-                   : there->unseen(poses, {.room = *asked.unseen, .radii = moves.summed(k, there->facts())});
+                   : there->unseen(poses, {.room = *asked.unseen, .radii = moves.summed(k, there->facts())}, false);
       report.unseen_query = own ? own->unseen_query : there->query;
       report.unseen = {
           .asked = &asked, .found = &*unseen, .clouds = {frame}, .bodies = &bodies, .filtered = own.has_value()};
     }
-    const std::optional<plan_report> plan = to_come.ask(*there);
+    const std::optional<plan_report> plan = to_come.ask(*there, clouds.files, bodies);
     if (plan) report.plan = &*plan;
     if (k == 0) {
       notes.clear();
+      if (frame) note_scale(clouds.seen, bodies, poses, report.found.result, notes);
       note_fields(*there, bodies, notes);
       print(notes, shown);
     }

@@ -6,7 +6,7 @@
 #include "configurations.hpp"
 #include "device.cuh"
 
-#include <clearance/backend/own_stream.cuh>
+#include <clearance/backends/own_stream.cuh>
 #include <clearance/device.cuh>
 #include <clearance/fields.hpp>
 #include <clearance/questions/in_collisions.hpp>
@@ -218,7 +218,10 @@ template <class Model>
 void sample(benchmark::State& state, Model (*make)(const scene&, clearance::build_options)) {
   if (no_device(state)) return;
   const auto model = make(the_scene(), {});
-  for (auto _ : state) benchmark::DoNotOptimize(clearance::with_fields(device{}, model).model.view());
+  for (auto _ : state) {
+    const auto fielded = clearance::with_fields(device{}, model).model;
+    benchmark::DoNotOptimize(fielded.view());
+  }
 }
 
 constexpr float all = clearance::infinity;

@@ -58,7 +58,7 @@ void zones(benchmark::State& state, bool prepared) {
   question q(std::size_t(state.range(0)));
   const clearance::zones options{.thresholds = {0.1, 0.2, 0.4}};
   const device_buffer<clearance::zone> found(3 * q.model.size(), q.gpu.id);
-  clearance::query query(q.gpu, q.model, clearance::zones{});
+  clearance::query query(q.gpu, q.model, clearance::zones{{0.0}});
   q.time(state, [&] {
     if (prepared)
       query.enqueue(q.s.poses, q.cloud, options, {found.data(), q.counts.data()});

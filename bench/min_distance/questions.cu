@@ -6,7 +6,7 @@
 #include "tables.cuh"
 
 #include <clearance/device.cuh>
-#include <clearance/frame/masked_clouds.hpp>
+#include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/self_filter.hpp>

@@ -5,7 +5,7 @@
 #include "host_competitors.hpp"
 #include "lab.cuh"
 
-#include <clearance/backend/pinned_buffer.cuh>
+#include <clearance/backends/device_buffer.cuh>
 
 namespace bench::paper {
 

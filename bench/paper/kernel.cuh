@@ -5,8 +5,8 @@
 
 #include "policies.cuh"
 
-#include <clearance/backend/device.cuh>
-#include <clearance/frame/frame.hpp>
+#include <clearance/backends/device.cuh>
+#include <clearance/frames/frame.hpp>
 
 #include <array>
 

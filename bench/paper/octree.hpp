@@ -5,7 +5,7 @@
 
 #if __has_include(<octomap/OccupancyOcTreeBase.h>)
 #define CLEARANCE_BENCH_OCTOMAP
-#include <clearance/frame/frame.hpp>
+#include <clearance/frames/frame.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/near_first.hpp>
 #include <clearance/visitor/nearest.hpp>

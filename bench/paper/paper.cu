@@ -2,7 +2,7 @@
 // The design space of Kaluschke et al. (2014) on today's GPU, compared with this library: every axis, on both of the
 // paper's scenarios, as CSV. All variants must find the minimum of min_distance, otherwise the exit code is 1.
 //
-//   bench_paper_device [FILE.csv [STAMP]]     scripts/paper runs it, and draws the results
+//   bench_paper_device [FILE.csv [STAMP]]     bench/compare-with-paper runs it, and draws the results
 //   CLEARANCE_QUICK=1 makes it a test: small clouds, exact against brute force
 #include "axes.cuh"
 #include "competitors.cuh"

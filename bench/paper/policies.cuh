@@ -5,7 +5,7 @@
 
 #include "bounds.hpp"
 
-#include <clearance/bvh/bvh_view.hpp>
+#include <clearance/bvh/bvh.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -4,8 +4,8 @@
 
 #include "bounds.hpp"
 
-#include <clearance/backend/host.hpp>
-#include <clearance/frame/frame.hpp>
+#include <clearance/backends/host.hpp>
+#include <clearance/frames/frame.hpp>
 #include <clearance/robot/model.hpp>
 
 #include <mutex>

@@ -7,9 +7,9 @@
 
 #include "bounds.hpp"
 
-#include <clearance/backend/host.hpp>
-#include <clearance/frame/frame.hpp>
-#include <clearance/frame/root_test.hpp>
+#include <clearance/backends/host.hpp>
+#include <clearance/frames/frame.hpp>
+#include <clearance/frames/root_test.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/near_first.hpp>

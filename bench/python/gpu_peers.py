@@ -178,7 +178,7 @@ def main(arguments):
     parser.add_argument("--seconds", type=float, default=20, help="for each robot")
     given = parser.parse_args(arguments)
     robot = clearance.Robot.from_urdf(str(given.urdf), model="triangles") if given.urdf else None
-    robot, poses = (robot, robot.poses()) if robot else arm()
+    robot, poses = (robot, robot.poses(rest=True)) if robot else arm()
     meshes = {name: robot.mesh(k) for k, name in enumerate(robot.parts)}
     filled = clearance.Robot.from_meshes(meshes, spheres=256)
     vertices, triangles = one_mesh(robot, poses)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The library's own time for the calls that bench/python/overhead.py makes, on the same robot and the same points.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/query/query.hpp>

@@ -165,7 +165,7 @@ def timed(call, budget=6.0):
 def main(arguments):
     if arguments:
         robot = clearance.Robot.from_urdf(arguments[0], model="triangles")
-        poses = robot.poses()
+        poses = robot.poses(rest=True)
     else:
         robot, poses = arm()
     vertices, triangles = one_mesh(robot, poses)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A type that cannot be changed as a bounding volume: Eigen's own box, taught to the library from outside.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/min_distance.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "inner_spheres.hpp"
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 
 int main() { return example(clearance::host{}); }

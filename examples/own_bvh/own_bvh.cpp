@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "own_bvh.hpp"
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 
 int main() {
   std::vector<theirs::node> memory(600);

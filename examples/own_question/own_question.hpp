@@ -39,8 +39,8 @@ struct nearness {
   };
 
   template <class Asked>
-  out room(const Asked& a) const {
-    return {a.template room<unsigned long long>(3 * a.parts()), a.template room<clearance::point_counts>(1)};
+  out space(const Asked& a) const {
+    return {a.template space<unsigned long long>(3 * a.parts()), a.template space<clearance::point_counts>(1)};
   }
   template <class Asked>
   answer prepare(const Asked& a, const out& to) const {

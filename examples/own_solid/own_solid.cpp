@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A solid of one's own, packed without any mesh: a dome by its formula.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/questions/min_distance.hpp>

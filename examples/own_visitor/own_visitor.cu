@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "own_visitor.hpp"
 
-#include <clearance/backend/device.cuh>
+#include <clearance/backends/device.cuh>
 
 // [device]
 template <clearance::hierarchy Tree>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot description and depth images in, a distance for every link out.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>

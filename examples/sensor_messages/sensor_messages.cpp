@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A PointCloud2, and a depth image with its CameraInfo, asked about where they lie. The messages here have the members
 // of ROS 2's, but nothing of ROS is needed.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/points/camera.hpp>
 #include <clearance/points/point_cloud2.hpp>

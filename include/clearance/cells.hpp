@@ -2,7 +2,7 @@
 #pragma once
 // Gives the parts of a robot cells: for every place around a part a list of the primitives that can be nearest there.
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/equipped.hpp>
 #include <clearance/pointwise/cell_tree.hpp>
 #include <clearance/robot/model.hpp>
@@ -39,7 +39,7 @@ cells<host> made_cells(const B& on, const Part& part, const cell_options& option
 
 /// Gives each part of a robot in host memory cells, made where `on` runs. A device then needs a look and some
 /// primitives, where it walked a tree, for the distance of a point to a part; no answer changes. `model.on(device)`
-/// copies cells, too. A part that can have none keeps its tree alone. Source: pointwise/cell_lists.hpp.
+/// copies cells, too. A part that can have none keeps its tree alone. Source: pointwise/cell_tree.hpp.
 template <backend B, class Part>
 equipped<model<celled<Part>>> with_cells(const B& on, model<Part> robot, const cell_options& options = {}) {
   static_assert(cored_hierarchy<typename model<Part>::view_type::hierarchy_type>,

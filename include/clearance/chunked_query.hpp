@@ -44,7 +44,7 @@ class chunk_engine {
     std::future<loaded_source<C>> ahead;
     const auto load = [&](std::size_t k) {
       auto& room = room_[k % 2];
-      room.resize((cloud.cloud().room(ranges[k].end - ranges[k].begin) + sizeof(line) - 1) / sizeof(line));
+      room.resize((cloud.cloud().bytes_for(ranges[k].end - ranges[k].begin) + sizeof(line) - 1) / sizeof(line));
       return minimum::load_range(cloud.cloud(), ranges[k], room.empty() ? nullptr : room[0].bytes);
     };
     loaded_ = 0;
@@ -119,6 +119,8 @@ class chunked_query {
   /// Throws std::invalid_argument as `query`.
   template <class Robot>
   chunked_query(const On& on, const Robot& robot, const Q& asked) : engine_(on, robot, asked), asked_(asked) {}
+  template <owning_robot Robot>
+  chunked_query(const On&, const Robot&&, const Q&) = delete;  // the robot would be gone when it is asked; name it
 
   /// As `query`; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object again.
   template <class Poses, loaded_cloud C>

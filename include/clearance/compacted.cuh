@@ -2,7 +2,7 @@
 #pragma once
 // The valid points of a cloud, and nothing else, on the host or on a device.
 
-#include <clearance/backend/device.cuh>
+#include <clearance/backends/device.cuh>
 #include <clearance/compacted.hpp>
 
 #include <thrust/iterator/counting_iterator.h>

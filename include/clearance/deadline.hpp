@@ -65,13 +65,13 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
                 "while points are unseen this question has no answer: it needs so_far(result&, std::uint64_t unseen)");
   static_assert(!requires { typename On::several; }, "a deadline is for a host or a device, not for several");
   detail::piece_numbers numbers;
-  numbers.look(clouds);
+  numbers.count(clouds);
   constexpr std::size_t usual = requires { typename On::own_scan; } ? 1 << 22 : 1 << 18;
   const std::size_t piece = options.piece != 0 ? options.piece : usual,
                     n = std::bit_ceil(std::size_t((numbers.total() + piece - 1) / piece));
   detail::joined_of<Q, PartView> all(q, ask.facts());
   std::uint64_t seen = 0;
-  const auto look = [&](const detail::some_slices& slices) {  // of every cloud, so that errors are those of all
+  const auto ask_slices = [&](const detail::some_slices& slices) {  // of every cloud, so that errors are those of all
     if constexpr (requires { ask.bound_by(all.reach()); }) ask.bound_by(all.reach());
     const auto place = numbers.place(clouds, slices);
     all.add(ask(poses, mapped_clouds(clouds, slices), q), place);
@@ -84,9 +84,9 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
     std::size_t i = 0;
     for (; i < n && go_on(); ++i) {
       const std::size_t k = detail::spread(i, n);
-      look({k, k + 1, n});
+      ask_slices({k, k + 1, n});
     }
-    if (i == 0) look({0, 0, n});  // at no points; what cannot be asked is refused all the same
+    if (i == 0) ask_slices({0, 0, n});  // at no points; what cannot be asked is refused all the same
   } catch (...) {
     forget();  // also a bound that no frame has used
     throw;

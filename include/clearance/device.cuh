@@ -3,9 +3,9 @@
 // Gives every question a device: include it beside the questions, in sources that nvcc compiles. What only some
 // questions need of a device they include themselves, because nvcc reads every header twice.
 
-#include <clearance/backend/one_call.cuh>
+#include <clearance/backends/one_call.cuh>
 #include <clearance/minimum/device_engine.cuh>
-#include <clearance/pairwise/device_engine.cuh>
+#include <clearance/pairwise/device_pairs.cuh>
 #include <clearance/query/on_devices.cuh>
 
 namespace clearance::detail {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A robot that was given cells or fields, and why some of its parts go without.
 
 #include <clearance/concepts.hpp>
 

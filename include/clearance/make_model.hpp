@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// From bodies to a robot: spheres, meshes or other primitives become parts with trees.
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/packing/packing.hpp>
@@ -18,17 +19,28 @@ struct part_options {
   bool certified = true;  ///< False: the solid is unknown (an open mesh without caps), so there is no lower bound.
 };
 
+namespace detail {
+
+/// A sum of tolerances hides a negative one.
+inline double tolerance_with(const part_options& options, double of_body) {
+  check_length(options.tolerance, "the tolerance of a part"), check_length(of_body, "the tolerance of a body");
+  return options.tolerance + of_body;
+}
+
+}  // namespace detail
+
 /// Inner spheres: signed distances, and the packing's gap and tolerance in the bracket.
 template <class V, class Fit = wrapped>
 auto make_part(const packing& spheres, const part_options& options = {}, Fit fit = {}) {
   return make_part(build<V>(spheres.spheres, options.build, fit), options.certified ? spheres.gap : infinity,
-                   options.tolerance + spheres.tolerance);
+                   detail::tolerance_with(options, spheres.tolerance));
 }
 
 /// Triangles, caps among them: exact distances outside, 0 inside. Primitive i is triangle i as loaded; caps come after.
 /// An open mesh has no inside, and no certificate. The mesh's own tolerance is added.
 template <class V, class Fit = wrapped>
 auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fit = {}) {
+  check(mesh);
   const auto corner = [&](std::uint32_t i) {
     const Eigen::Vector3d& v = mesh.surface.vertices[i];
     return vec3{real(v.x()), real(v.y()), real(v.z())};
@@ -37,8 +49,8 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   for (const auto& t : mesh.surface.triangles)
     triangles.push_back(triangle::from(corner(t[0]), corner(t[1]), corner(t[2])));
   const bool certain = options.certified && mesh.closed;
-  auto surface =
-      make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity, options.tolerance + mesh.tolerance);
+  auto surface = make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity,
+                           detail::tolerance_with(options, mesh.tolerance));
   winding<> interior;
   if (mesh.closed)
     interior = make_winding(mesh);

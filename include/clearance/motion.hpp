@@ -2,7 +2,7 @@
 #pragma once
 // How a robot moves over a time from 0 to 1, and how far its parts can move in a part of that time.
 
-#include <clearance/frame/frame.hpp>
+#include <clearance/frames/frame.hpp>
 
 #include <concepts>
 

@@ -2,7 +2,7 @@
 #pragma once
 // How close does a robot come to the points while it moves?
 
-#include <clearance/frame/margins.hpp>
+#include <clearance/frames/margins.hpp>
 #include <clearance/motion.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/robot/widened.hpp>
@@ -102,7 +102,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
   std::vector<asked_time> asked;
   frames::frame_ahead ahead;
   double certain = infinity;  // at the times that were asked
-  const auto look = [&](double time) {
+  const auto ask_at = [&](double time) {
     moment now = motion.at(time, facts);
     check(now, facts.size());
     const min_distance_per_part_result& found = ask(now.poses);
@@ -112,11 +112,11 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     if (++all.queries == 1 || upper < all.upper || (upper == all.upper && time < all.time))
       all.upper = upper, all.time = time, all.nearest = r;
     if (r.part == none) return false;
-    const frames::float_error error = ahead.look(facts, now.poses, clouds).error;
+    const frames::float_error error = ahead.facts_of(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
     for (std::size_t k = 0; k < facts.size(); ++k) {
       const part_facts its_facts = widened(facts[k], radius_of(options.radii, k));
-      const double its = minimum::certain_distance(found.parts[k].distance, frames::slop(its_facts), error);
+      const double its = frames::certain_distance(found.parts[k].distance, frames::slop(its_facts), error);
       a.lower.push_back(its > 0 ? its : 0);
     }
     certain = std::min(certain, piece_around(a, 0, 0).lower);
@@ -124,7 +124,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     return true;
   };
   std::priority_queue<motion_piece> pieces;
-  if (!look(0.5)) return all;
+  if (!ask_at(0.5)) return all;
   for (motion_piece worst = piece_around(asked[0], 0, 0.5);; worst = pieces.top(), pieces.pop()) {
     all.lower = rounded_down(worst.lower), all.part = worst.part;
     all.from = std::max(0.0, worst.time - worst.half), all.to = std::min(1.0, worst.time + worst.half);
@@ -140,7 +140,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     };
     put(worst.asked);  // a third of it has the same middle, so that two questions make three pieces
     for (const double time : {worst.time - 2 * third, worst.time + 2 * third}) {
-      if (!look(time)) return all.lower = 0, all.state = state::no_data, all;
+      if (!ask_at(time)) return all.lower = 0, all.state = state::no_data, all;
       put(asked.size() - 1);
     }
   }

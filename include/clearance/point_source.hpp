@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -93,15 +95,62 @@ struct position_error {
   double absolute = 0, relative = 0;
 };
 
-/// From the optional member `position_error rounding() const`, called on the host; a source without it is exact.
+namespace detail {
+
+[[noreturn, gnu::noinline, gnu::cold]] inline void refuse_source(const std::string& why) {
+  throw std::invalid_argument("clearance: " + why);
+}
+/// Throws std::invalid_argument unless `nearest` to `farthest` is a range.
+inline void check_range(double nearest, double farthest, const char* what) {
+  if (!(nearest <= farthest))
+    refuse_source(std::string(what) + " counts from " + std::to_string(nearest) + " m to " + std::to_string(farthest) +
+                  " m, which is no range");
+}
+
+}  // namespace detail
+
+/// From the optional member `position_error rounding() const`, called on the host; a source without it is exact. Every
+/// question asks this of every cloud before it reads a point. So it also calls the optional member `void check()
+/// const`, which throws std::invalid_argument if the source's numbers contradict one another; and throws that itself
+/// for an error that is negative or not finite.
 template <point_source S>
 position_error rounding_of(const S& source) {
+  if constexpr (requires { source.check(); }) source.check();
   if constexpr (requires {
                   { source.rounding() } -> std::same_as<position_error>;
-                })
-    return source.rounding();
-  else
+                }) {
+    const position_error its = source.rounding();
+    for (const double x : {its.absolute, its.relative})
+      if (!(x >= 0 && x < double(infinity)))
+        detail::refuse_source("a cloud's points are off by up to " + std::to_string(its.absolute) + " m and by " +
+                              std::to_string(its.relative) + " of their distance, which must be finite and 0 or more");
+    return its;
+  } else {
     return {};
+  }
+}
+
+/// How far p, where point i of a source is `out_of_range`, is from its range, in metres: not more than it is. From the
+/// optional member `real beyond(std::size_t i, vec3 p) const`, a filter, or the source that it views. Infinite if none
+/// says: such a point is out, however uncertain it is.
+template <point_source S>
+CLEARANCE_HD real beyond_range(const S& s, std::size_t i, vec3 p) {
+  if constexpr (requires {
+                  { s.beyond(i, p) } -> std::same_as<real>;
+                })
+    return s.beyond(i, p);
+  else if constexpr (requires {
+                       { s.filter.beyond(p) } -> std::same_as<real>;
+                     })
+    return s.filter.beyond(p);
+  else if constexpr (requires { requires point_source<std::remove_cvref_t<decltype(s.source)>>; })
+    return beyond_range(s.source, i, p);
+  else if constexpr (requires { s.whole, s.begin; })
+    return beyond_range(s.whole, s.begin + i, p);
+  else if constexpr (requires { requires point_source<std::remove_cvref_t<decltype(s.whole)>>; })
+    return beyond_range(s.whole, i, p);
+  else
+    return infinity;
 }
 
 /// `point_source<S>` with reasons.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// What a question answers: the least distance, its bracket and its witness, and what they mean for a robot.
 
 #include <clearance/concepts.hpp>
 #include <clearance/ground/pose.hpp>

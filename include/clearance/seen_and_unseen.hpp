@@ -2,8 +2,8 @@
 #pragma once
 // How far is a robot from what cameras see, and from what they do not see?
 
-#include <clearance/backend/beside.hpp>
-#include <clearance/frame/masked_clouds.hpp>
+#include <clearance/backends/beside.hpp>
+#include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/questions/unseen.hpp>
 
 namespace clearance {

@@ -44,6 +44,15 @@ def joined(words):
     return out
 
 
+def check_once(parser, words):
+    """Refuses an option with one value that is given twice: the last would win, in silence."""
+    for action in parser._actions:
+        if action.option_strings and action.nargs is None and isinstance(action, argparse._StoreAction):
+            given = [word.partition("=")[0] for word in words if word.partition("=")[0] in action.option_strings]
+            if len(given) > 1:
+                parser.error(f"{given[0]} is given {len(given)} times, and it has one value")
+
+
 def main(arguments=None):
     arguments = sys.argv[1:] if arguments is None else arguments
     known = {m.name.replace("_", "-"): m.name for m in pkgutil.iter_modules(commands.__path__)}
@@ -55,18 +64,26 @@ def main(arguments=None):
         return 1
     parser = argparse.ArgumentParser(prog="clearance", description="How far a robot is from what its sensors see.")
     of = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    its = {}
     for name, module in sorted(known.items()):
         if arguments and arguments[0] not in (name, "-h", "--help"):
             continue
         each = importlib.import_module(f"{commands.__name__}.{module}")
-        each.add(of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__, allow_abbrev=False,
-                               add_help=not getattr(each, "HANDS_ON", False)))
+        its[name] = of.add_parser(name, help=each.__doc__.strip().splitlines()[0], description=each.__doc__,
+                                  allow_abbrev=False, add_help=not getattr(each, "HANDS_ON", False))
+        each.add(its[name])
     asked, others = parser.parse_known_args(joined(arguments))
+    check_once(its[asked.command], joined(arguments))
     if others and not getattr(importlib.import_module(f"{commands.__name__}.{known[asked.command]}"), "HANDS_ON", False):
         parser.error(f"unrecognized arguments: {' '.join(others)}")
     asked.others = others
     try:
-        return importlib.import_module(f"{commands.__name__}.{known[asked.command]}").run(asked) or 0
+        status = importlib.import_module(f"{commands.__name__}.{known[asked.command]}").run(asked) or 0
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # who read what is printed has gone, such as head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what Python flushes at its end
+        return 141
     except (ValueError, RuntimeError, OSError, ImportError) as error:
         print(f"clearance {asked.command}: {str(error).removeprefix('clearance: ')}", file=sys.stderr)
         return 1

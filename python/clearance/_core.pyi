@@ -13,9 +13,9 @@ none: int = 4294967295
 class DistanceCertainty:
     """How certain each distance of an answer is: lower() of it is proven."""
 
-    def lower(self, distance: float) -> float:
+    def lower(self, distance: float, part: object | None = None) -> float:
         """
-        The solid is at least this far away, metres; 0 if nothing more is certain.
+        The solid is at least this far away, metres; 0 if nothing more is certain. part: whose distance it is; where the answer keeps each part's gap and tolerance, only that part's are taken off, and IndexError is raised for a part that is not there.
         """
 
     def __repr__(self) -> str: ...
@@ -26,15 +26,15 @@ class Robot:
     """
 
     @staticmethod
-    def from_urdf(file: object, model: str = 'spheres', spheres: object | None = None, geometry: str = 'collision', packages: Mapping[str, object] = {}, exclude_links: Sequence[str] = [], cache: bool = True) -> Robot:
+    def from_urdf(file: object, model: str = 'spheres', spheres: object | None = None, geometry: str = 'collision', packages: Mapping[str, object] = {}, exclude_links: Sequence[str] = [], cache: bool = True, gltf_up: str | None = None) -> Robot:
         """
-        Reads a URDF file and its meshes. model: "spheres" (packed into each link, `spheres` of them; kept in the cache) or "triangles" (exact). packages: the folder of package://name. Raises RuntimeError if a file is damaged or missing, ValueError if an option cannot be.
+        Reads a URDF file and its meshes. model: "spheres" (packed into each link, `spheres` of them; kept in the cache) or "triangles" (exact). packages: the folder of package://name. gltf_up: "y" or "z", which axis of glTF meshes is up; None: as a link's other geometry shows, else y, with a note. Raises RuntimeError if a file is damaged or missing, ValueError if an option cannot be.
         """
 
     @staticmethod
-    def from_meshes(meshes: Mapping[str, object], model: str = 'spheres', spheres: object | None = None, name: str = 'robot', cache: bool = True) -> Robot:
+    def from_meshes(meshes: Mapping[str, object], model: str = 'spheres', spheres: object | None = None, name: str = 'robot', cache: bool = True, gltf_up: str | None = None) -> Robot:
         """
-        One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with vertices and faces. Metres.
+        One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with vertices and faces. Metres. gltf_up: as of from_urdf.
         """
 
     @staticmethod
@@ -71,6 +71,30 @@ class Robot:
         """The names of the movable joints, in the order of joint values."""
 
     @property
+    def mimics(self) -> dict[str, tuple[str, float, float]]:
+        """
+        The joints that follow others, {name: (other, multiplier, offset)}. A value that joints, as a dictionary, gives one of them wins, as with ROS's robot_state_publisher.
+        """
+
+    @property
+    def insides(self) -> list[str | None]:
+        """
+        How each part's inside is known: "closed", "caps", "flood" or "nothing"; None: there is no mesh.
+        """
+
+    @property
+    def tolerances(self) -> NDArray[numpy.float64]:
+        """
+        By how much each part's solid may differ from the true surface, either way, (parts,): metres. Brackets are wider by it.
+        """
+
+    @property
+    def gaps(self) -> NDArray[numpy.float64]:
+        """
+        How far each part's solid may be from its spheres or triangles, (parts,): metres; inf: unknown.
+        """
+
+    @property
     def limits(self) -> NDArray[numpy.float64]:
         """The joints' lower and upper limits, (joints, 2): radians or metres."""
 
@@ -78,22 +102,22 @@ class Robot:
     def rest(self) -> NDArray[numpy.float64]:
         """Each joint at 0, or at the limit nearest to it."""
 
-    def poses(self, joints: object | None = None, base: object | None = None, ignore_limits: bool = False) -> NDArray[numpy.float64]:
+    def poses(self, joints: object | None = None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
-        World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}. base is world-from-base. Raises ValueError for values beyond the limits.
-        """
-
-    def link_pose(self, link: str, joints: object | None = None, base: object | None = None) -> NDArray[numpy.float64]:
-        """
-        World-from-link of any link, (4, 4): with geometry or without, such as a camera's.
+        World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}, where a joint of `mimics` may have a value of its own, too. base is world-from-base. Raises ValueError for values beyond the limits, and for joints that nothing is said of, unless rest: then they are at rest.
         """
 
-    def jacobian(self, joints: object | None, part: object | None, at: object | None, base: object | None = None) -> NDArray[numpy.float64]:
+    def link_pose(self, link: str, joints: object | None = None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+        """
+        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.
+        """
+
+    def jacobian(self, joints: object | None, part: object | None, at: object | None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
         What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its angular velocity, per radian or metre.
         """
 
-    def part_radii(self, joints: object | None, errors: object | None = None, speeds: object | None = None, delay: float = 0.0, ignore_limits: bool = False) -> NDArray[numpy.void]:
+    def part_radii(self, joints: object | None, errors: object | None = None, speeds: object | None = None, delay: float = 0.0, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.void]:
         """
         How far each part may be from where joints have it, for CertainDistance(parts=...): records of joints and delay, metres. errors (rad, m): by how much joints may be wrong; speeds, per second, in the seconds of delay; one number, or one a joint. Raises ValueError for what is negative or not finite.
         """
@@ -395,7 +419,7 @@ class SelfFilterCounts:
 
     def __repr__(self) -> str: ...
 
-class DropReason(enum.Enum):
+class DropReason(enum.IntEnum):
     """
     Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
     """
@@ -446,7 +470,7 @@ class Hiding:
 
     def __hash__(self) -> int: ...
 
-class PointLabel(enum.Enum):
+class PointLabel(enum.IntEnum):
     """Whose a point is. One byte, so that a mask of labels is an image."""
 
     rest = 0
@@ -595,7 +619,7 @@ class PartRadius:
 
 class CertainDistance:
     """
-    The least distance as measured, and what is certain of it: the least of (distance - the point's radius - the part's) over all pairs, less gap, tolerance and rounding. Clouds are uncertain; a bare one has radii 0. Throws std::invalid_argument if there is neither no radius nor one per part, or if one is negative or not finite.
+    The least distance as measured, and what is certain of it: the least of (distance - the point's radius - the part's) over all pairs, less gap, tolerance and rounding. Clouds are uncertain; a bare one has radii 0. Raises ValueError if there is neither no radius nor one per part, or if one is negative or not finite.
     """
 
     def __init__(self, parts: ArrayLike = ()) -> None:
@@ -634,7 +658,10 @@ class PointDistances:
     def counts(self) -> PointCounts: ...
 
     @property
-    def certain(self) -> DistanceCertainty: ...
+    def certain(self) -> DistanceCertainty:
+        """
+        Of each distance: another part than the nearest may be nearer in truth.
+        """
 
     def __repr__(self) -> str: ...
 
@@ -683,9 +710,14 @@ class PartDistances:
     def counts(self) -> PointCounts: ...
 
     @property
-    def certain(self) -> DistanceCertainty: ...
+    def certain(self) -> DistanceCertainty:
+        """Of each distance, by its part."""
 
-    def of(self, part: int) -> NDArray[numpy.float32]: ...
+    @property
+    def parts(self) -> int: ...
+
+    def of(self, part: int) -> NDArray[numpy.float32]:
+        """Those of a part. Raises IndexError if there is no such part."""
 
     def __repr__(self) -> str: ...
 
@@ -791,7 +823,7 @@ class InCollisionsResult:
 
     def trajectory(self, i: int, horizon: int) -> NDArray[numpy.uint8]:
         """
-        If the configurations are several trajectories, [batch, horizon]: the states of trajectory i, and the first of each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of horizon configurations, or if there is no trajectory i.
+        If the configurations are several trajectories, [batch, horizon]: the states of trajectory i, and the first of each trajectory, counted from its beginning. Raises ValueError if they are not whole trajectories of horizon configurations, IndexError if there is no trajectory i.
         """
 
     def __repr__(self) -> str: ...
@@ -851,7 +883,7 @@ class MinDistancePerPartResult:
 
 class MinDistancePerPart:
     """
-    The least distance of the robot, and of each part: each has its own bound, and all.lower is tighter.
+    The least distance of the robot, and of each part: each has its own bound.
     """
 
     def __init__(self) -> None: ...
@@ -961,7 +993,7 @@ class MinDistancesResult:
     @overload
     def first_below(self, margin: float) -> int:
         """
-        The first configuration that is not certainly farther away than margin metres, or of.size(). Without a valid point it is the first. Throws std::invalid_argument if the margin is negative or NaN: lower is 0 in a collision, too.
+        The first configuration that is not certainly farther away than margin metres, or of.size(). Without a valid point it is the first. Raises ValueError if the margin is negative or NaN: lower is 0 in a collision, too.
         """
 
     @overload
@@ -970,7 +1002,7 @@ class MinDistancesResult:
 
     def trajectory(self, i: int, horizon: int) -> NDArray[numpy.void]:
         """
-        If the configurations are several trajectories, [batch, horizon]: the results of trajectory i. Throws std::invalid_argument if they are not whole trajectories of horizon configurations, or if there is no trajectory i.
+        If the configurations are several trajectories, [batch, horizon]: the results of trajectory i. Raises ValueError if they are not whole trajectories of horizon configurations, IndexError if there is no trajectory i.
         """
 
     def __repr__(self) -> str: ...
@@ -983,7 +1015,7 @@ class MinDistances:
     def __init__(self, d_max: float = float('inf'), radii: float | ArrayLike = ()) -> None:
         """
         d_max: Metres. For a configuration farther away only that fact is reported, much faster.
-        radii: By how much parts may be elsewhere, in metres: all alike, or each. The bracket has the greatest.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
@@ -994,9 +1026,7 @@ class MinDistances:
 
     @property
     def radii(self) -> tuple[float, ...]:
-        """
-        By how much parts may be elsewhere, in metres: all alike, or each. The bracket has the greatest.
-        """
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
 
     def __repr__(self) -> str: ...
 
@@ -1019,7 +1049,10 @@ class MinDistancesPerPartResult:
 
     def size(self) -> int: ...
 
-    def of(self, c: int) -> NDArray[numpy.void]: ...
+    def of(self, c: int) -> NDArray[numpy.void]:
+        """
+        Those of a configuration. Raises IndexError if there is no such configuration.
+        """
 
     def __repr__(self) -> str: ...
 
@@ -1092,9 +1125,10 @@ class NearestKResult:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each distance."""
+        """Of each pair's distance, by its part."""
 
-    def of(self, part: int) -> NDArray[numpy.void]: ...
+    def of(self, part: int) -> NDArray[numpy.void]:
+        """Those of a part. Raises IndexError if there is no such part."""
 
     def __repr__(self) -> str: ...
 
@@ -1257,7 +1291,7 @@ class WithinResult:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each distance."""
+        """Of each pair's distance, by its part."""
 
     def __repr__(self) -> str: ...
 
@@ -1331,7 +1365,8 @@ class ZonesResult:
     def unseen(self) -> int:
         """Points that there was no time for; any of them may be in any zone."""
 
-    def of(self, part: int, z: int) -> Zone: ...
+    def of(self, part: int, z: int) -> Zone:
+        """Zone z of a part. Raises IndexError if there is none."""
 
     def innermost(self) -> int:
         """
@@ -1379,7 +1414,7 @@ class Zones:
 
     def __hash__(self) -> int: ...
 
-class State(enum.Enum):
+class State(enum.IntEnum):
     """What a bracket means for a robot that is about to move."""
 
     free = 0
@@ -1584,12 +1619,12 @@ class Query(Generic[Answer]):
     @overload
     def __init__(self: Query[ZonesResult], robot: Robot, question: Zones | type[Zones], device: str = 'cpu') -> None: ...
 
-    def __call__(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False) -> Answer:
+    def __call__(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> Answer:
         """
-        Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with base (world-from-base); or poses (parts, 4, 4), world-from-part. Questions about many configurations take joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: other options for this call. Raises ValueError with a sentence that names the argument.
+        Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with base (world-from-base); or poses (parts, 4, 4), world-from-part; rest: what nothing is said of is at rest, or at the base. Questions about many configurations take joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: other options for this call. Raises ValueError with a sentence that names the argument.
         """
 
-    def enqueue(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, out: object | None = None, capacity: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False) -> DeviceAnswer:
+    def enqueue(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, out: object | None = None, capacity: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> DeviceAnswer:
         """
         The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
         """
@@ -1630,7 +1665,7 @@ class DeviceArray:
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
 
-    def __dlpack__(self, stream: int | None = None, **others: Any) -> Any: ...
+    def __dlpack__(self, stream: int = None, **others: Any) -> Any: ...
 
     def __dlpack_device__(self) -> tuple[int, int]: ...
 
@@ -1658,7 +1693,7 @@ class DeviceAnswer:
 
     def __repr__(self) -> str: ...
 
-def joint_gradients(robot: Robot, joints: object, result: object, base: object | None = None, ignore_limits: bool = False) -> NDArray[numpy.float64]:
+def joint_gradients(robot: Robot, joints: object | None, result: object, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
     """
-    How each least distance changes with the joints, (..., joints): metres per radian or metre, from its witness. joints and base are those that were asked. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
+    How each least distance changes with the joints, (..., joints): metres per radian or metre, from its witness. joints and base are those that were asked; ValueError if not, or if result is of another robot. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
     """

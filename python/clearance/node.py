@@ -183,7 +183,7 @@ class Wire:
 class Node:
     """Takes frames, joints and transforms from the wire, and publishes the clearance of each frame.
 
-    clouds, images: topics of PointCloud2, of depth Image. margin: metres; the stop topic says STOP while the lower end
+    clouds, images: topics of PointCloud2, of depth Image. compressed: of CompressedImage that holds depth. margin: metres; the stop topic says STOP while the lower end
     of any sensor is not above it, or is unknown. slow: the same for SLOWDOWN. timeout: seconds without an answer for a
     sensor after which it is unknown. wait: seconds that a frame waits for joints and transforms up to its stamp.
     max_delay: seconds by the system's clock after its stamp at which a frame is too old to be an answer. Other options
@@ -196,6 +196,7 @@ class Node:
         *,
         clouds=(),
         images=(),
+        compressed=(),
         joint_topic="/joint_states",
         tf_topics=("/tf", "/tf_static"),
         name="clearance",
@@ -209,7 +210,7 @@ class Node:
         wire=None,
         **options,
     ):
-        if not clouds and not images:
+        if not clouds and not images and not compressed:
             raise ValueError("a node needs a topic of clouds or images")
         self.watch = playing.Watch(robot, question=question or _core.MinDistancePerPart(), **options)
         self.wire = wire = wire or Wire(domain)
@@ -220,7 +221,9 @@ class Node:
             self.frames[wire.reader(topic, recordings.CLOUD)] = (topic, recordings.CLOUD)
         for topic in images:
             self.frames[wire.reader(topic, recordings.IMAGE)] = (topic, recordings.IMAGE)
-        for topic in sorted({self.watch.info_topic(topic) for topic in images}):
+        for topic in compressed:
+            self.frames[wire.reader(topic, recordings.COMPRESSED)] = (topic, recordings.COMPRESSED)
+        for topic in sorted({self.watch.info_topic(topic) for topic in (*images, *compressed)}):
             self.others[wire.reader(topic, recordings.CAMERA)] = (topic, recordings.CAMERA)
         for topic in tf_topics:
             static = topic.rsplit("/", 1)[-1] == "tf_static"
@@ -246,7 +249,7 @@ class Node:
     def _warm(self):
         """The first frame shall not wait for what is prepared once."""
         self.watch.ask(np.zeros((1, 3), np.float32), poses=np.tile(np.eye(4), (len(self.watch.robot), 1, 1)))
-        row = playing.Row(0.0, "", "", parts={"": 0.0}, dropped={"": 0}, at=(0.0,) * 3, nearest=(0.0,) * 3)
+        row = playing.Row(0, "", "", parts={"": 0.0}, dropped={"": 0}, at=(0.0,) * 3, nearest=(0.0,) * 3)
         header = header_of(self.wire, row, self.watch)
         for kind, message in (
             (CLEARANCE, clearance_of(self.wire, row, _Sensor(0.0), header)),
@@ -299,7 +302,7 @@ class Node:
             try:
                 message = sample.decode()
             except Exception as error:
-                row = playing.Row(time.time(), topic, "", note=f"{topic}: a message is no {kind} ({error})")
+                row = playing.Row(time.time_ns(), topic, "", note=f"{topic}: a message is no {kind} ({error})")
                 self._say(row, sensor, received)
                 continue
             stamp = nanoseconds(message.header.stamp)
@@ -319,8 +322,8 @@ class Node:
             if sensor.waiting and time.monotonic() > until and self._due(topic, sensor.waiting[0]):
                 sensor.skipped += 1
                 continue
-            stamp = nanoseconds(message.header.stamp) / 1e9
-            delay = time.time() - stamp
+            stamp = nanoseconds(message.header.stamp)
+            delay = (time.time_ns() - stamp) / 1e9
             if delay > self.max_delay:
                 row = playing.Row(
                     stamp,
@@ -333,7 +336,7 @@ class Node:
             self._say(row, sensor, received, message.header.stamp)
         if time.monotonic() >= sensor.answered + self.timeout:
             self._say(
-                playing.Row(time.time(), topic, "", note=f"no frame could be answered for {self.timeout:g} s"), sensor
+                playing.Row(time.time_ns(), topic, "", note=f"no frame could be answered for {self.timeout:g} s"), sensor
             )
 
     def _say(self, row, sensor, received=None, stamp=None):
@@ -385,7 +388,8 @@ STATES = ("unknown", "no_data", "free", "possible", "collision")
 def header_of(wire, row, watch, stamp=None):
     """The header of all messages about a row. stamp: of the frame, to the nanosecond."""
     if stamp is None:
-        stamp = wire.make("builtin_interfaces/msg/Time", sec=int(row.stamp), nanosec=int(row.stamp % 1 * 1e9))
+        seconds, rest = divmod(row.stamp_ns, 1_000_000_000)
+        stamp = wire.make("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
     return wire.make("std_msgs/msg/Header", stamp=stamp, frame_id=watch.base_frame or row.frame)
 
 
@@ -446,7 +450,7 @@ def markers_of(wire, row, header):
     here = row.at is not None and row.nearest is not None
     ends = [_point(wire, row.at), _point(wire, row.nearest)] if here else []
     middle = tuple((a + b) / 2 for a, b in zip(row.at, row.nearest, strict=True)) if here else (0.0, 0.0, 0.0)
-    text = f"{row.distance:.3f} m {row.link}" if here else f"{row.topic}: {row.state}"
+    text = f"{row.distance:z.3f} m {row.link}" if here else f"{row.topic}: {row.state}"
     shared = {
         "header": header,
         "ns": f"clearance{row.topic}",

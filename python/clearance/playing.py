@@ -11,7 +11,7 @@ import pathlib
 
 import numpy as np
 
-from . import _core, recordings
+from . import _core, recordings, words
 from .seeing import scenes
 from .recordings import Damaged, Unknown, nanoseconds
 
@@ -26,7 +26,7 @@ class Row:
     why). With the last two lower is 0 and upper infinite, so that `row.lower < margin` stops.
     """
 
-    stamp: float  # seconds
+    stamp_ns: int | None  # nanoseconds; None: it has none
     topic: str
     frame: str
     state: str = "unknown"
@@ -43,6 +43,15 @@ class Row:
     note: str = ""
     parts: dict | None = None  # the distance to each part, if the question was MinDistancePerPart
     checked: float | None = None  # the distance by NumPy, if a check was asked for
+
+    def say(self, sentence):
+        """Adds a sentence to the note."""
+        self.note += f"; {sentence}" if self.note else sentence
+
+    @property
+    def stamp(self):
+        """Seconds: of today's stamps, a float knows a fraction of a microsecond."""
+        return math.nan if self.stamp_ns is None else self.stamp_ns / 1e9
 
 
 @dataclasses.dataclass(slots=True)
@@ -92,11 +101,12 @@ class Watch:
             raise ValueError("a check by NumPy needs a robot of spheres, and the nearest of all points")
         if not max_age >= 0:
             raise ValueError(f"max_age is {max_age} s; it is 0 or more")
-        self.ask = _core.Query(robot, self.question, device)
+        self.ask, self.device = _core.Query(robot, self.question, device), device
+        self.ask_certain = None  # made when it is first needed
         self.base_frame, self.max_age, self.check = base_frame, max_age, check
         self.nearest, self.farthest, self.zero_is_missing = nearest, farthest, zero_is_missing
-        self.fixed = dict(joints or {})
-        if strange := sorted(set(self.fixed) - set(robot.joints)):
+        self.fixed, self.mimics = words.by_name(robot, joints or {}), robot.mimics
+        if strange := sorted(set(self.fixed) - set(robot.joints) - set(self.mimics)):
             raise ValueError(f"the robot has no joint {strange[0]!r} (it has: {', '.join(robot.joints) or 'none'})")
         self.moving = [name for name in robot.joints if name not in self.fixed]
         self.turns = {
@@ -104,6 +114,8 @@ class Watch:
             for name, (low, high) in zip(robot.joints, robot.limits, strict=True)
             if low == -math.inf and high == math.inf
         }
+        for _ in self.mimics:  # what follows a wheel turns as it does
+            self.turns |= {name for name, (other, *_) in self.mimics.items() if other in self.turns}
         try:  # without a URDF, transforms place the parts
             robot.poses(robot.rest)
             self.by_joints = True
@@ -130,12 +142,12 @@ class Watch:
         """The topic of an image's CameraInfo: camera_info says it, or it is the image's neighbour."""
         said = self.camera_info
         said = said.get(topic) if isinstance(said, dict) else said
-        return said or topic.rsplit("/", 1)[0] + "/camera_info"
+        return said or recordings.lens_topic(topic).rsplit("/", 1)[0] + "/camera_info"
 
     def ready(self, topic, kind, message):
         """Whether all that a frame needs is known up to its stamp."""
         stamp = nanoseconds(message.header.stamp)
-        if kind == recordings.IMAGE:
+        if kind != recordings.CLOUD:
             info = self.infos.get(self.info_topic(topic))
             if info is None or nanoseconds(info.header.stamp) < stamp:
                 return False
@@ -144,7 +156,7 @@ class Watch:
             return all(
                 self.transforms.covers(frame, name, stamp) for name in (*self.robot.parts, message.header.frame_id)
             )
-        if not self.joints.covers(self.moving, stamp):
+        if not self.joints.covers((*self.moving, *self._measured_mimics()), stamp):
             return False
         try:
             base = self._base()
@@ -157,8 +169,8 @@ class Watch:
 
     def row(self, topic, kind, message):
         """The Row of a PointCloud2 or Image, with what is known now."""
-        row = Row(nanoseconds(message.header.stamp) / 1e9, topic, message.header.frame_id)
-        if self.only is not None and (row.stamp, topic) not in self.only:
+        row = Row(nanoseconds(message.header.stamp), topic, message.header.frame_id)
+        if self.only is not None and (row.stamp_ns, topic) not in self.only:
             row.note = "not asked"
             return row
         try:
@@ -166,8 +178,11 @@ class Watch:
         except ValueError as error:  # Unknown, or a message that cannot be
             sight = None
             row.note = str(error).removeprefix("clearance: ")
+            for said in self.transforms.refused[:3]:
+                if said not in row.note:
+                    row.say(said)
             if self.notes:
-                row.note += f"; {sum(self.notes.values())} messages were refused before ({next(iter(self.notes))})"
+                row.say(f"{sum(self.notes.values())} messages were refused before ({next(iter(self.notes))})")
         if sight and self.each:
             self.each(row, sight)
         return row
@@ -199,47 +214,80 @@ class Watch:
             return False
 
     def _link(self, name, joints=None):
-        return self.robot.link_pose(name.lstrip("/"), self.robot.rest if joints is None else joints)
+        # Measured joints are facts, also where an encoder is beyond a limit.
+        return self.robot.link_pose(name.lstrip("/"), self.robot.rest if joints is None else joints, ignore_limits=True)
+
+    def _measured_mimics(self):
+        """The joints that follow others by <mimic>, and are published or said all the same: that value wins."""
+        return [name for name in self.mimics if name in self.fixed or name in self.joints.tracks]
+
+    def _joints(self, row, stamp):
+        """What robot.poses takes, of the joints at a stamp."""
+
+        def value(name):
+            if name in self.fixed:
+                return self.fixed[name]
+            return self.joints.at(name, stamp, self.max_age, name in self.turns)
+
+        values = {name: value(name) for name in self.robot.joints}
+        own = {name: value(name) for name in self._measured_mimics()}
+
+        def followed(name):
+            if name in values or name in own:
+                return values.get(name, own.get(name))
+            other, factor, offset = self.mimics[name]
+            return factor * followed(other) + offset
+
+        for name, measured in own.items():
+            other, factor, offset = self.mimics[name]
+            if abs(measured - (by_mimic := factor * followed(other) + offset)) > 1e-3:
+                how = "given" if name in self.fixed else "published"
+                row.say(f"{name} is at {measured:.4g} as {how}, not at {by_mimic:.4g} as <mimic> says")
+        return values | own if own else np.array(list(values.values()), float)
 
     def _ask(self, row, topic, kind, message):
         stamp, frame = nanoseconds(message.header.stamp), message.header.frame_id
-        if kind == recordings.IMAGE:
-            image = recordings.depth(message)
+        short_by = None
+        if kind == recordings.CLOUD:
+            points = recordings.cloud(message)
+        else:
+            if kind == recordings.COMPRESSED:
+                image, short_by = recordings.compressed_depth(message)
+            else:
+                image = recordings.depth(message)
             about = self.infos.get(self.info_topic(topic))
             if about is None:
                 raise Unknown(f"no CameraInfo was seen on {self.info_topic(topic)}")
-            lens = self.cameras.of(about, image.shape, "rect" in topic.rsplit("/", 1)[-1], topic)
-        else:
-            points = recordings.cloud(message)
+            rectified = "rect" in recordings.lens_topic(topic).rsplit("/", 1)[-1]
+            lens = self.cameras.of(about, image.shape, rectified, topic)
         if self.by_joints:
-            values = [
-                self.fixed[name]
-                if name in self.fixed
-                else self.joints.at(name, stamp, self.max_age, name in self.turns)
-                for name in self.robot.joints
-            ]
+            values = self._joints(row, stamp)
             where = self._camera_pose(frame, stamp, values)
-            # Measured joints are facts, also where an encoder is beyond a limit.
-            poses = self.robot.poses(np.array(values, float), ignore_limits=True)
+            poses = self.robot.poses(values, ignore_limits=True)
         else:
             world = self.base_frame or frame
             where = self.transforms.at(world, frame, stamp, self.max_age)
             poses = np.stack([self.transforms.at(world, name, stamp, self.max_age) for name in self.robot.parts])
         limits = {"nearest": self.nearest, "farthest": self.farthest}
-        if kind == recordings.IMAGE:
-            cloud = _core.depth_image(image, pose=where, **lens, **limits)
-            seen = {"depth": image, "camera_pose": where, **lens}
-        else:
+        if kind == recordings.CLOUD:
             cloud = _core.points(points, where, zero_is_missing=self.zero_is_missing, **limits)
             seen = {"points": points, "cloud_pose": where}
+        else:
+            cloud = _core.depth_image(image, pose=where, **lens, **limits)
+            seen = {"depth": image, "camera_pose": where, **lens}
         result = self.ask(clouds=[cloud], poses=poses)
         self._write(row, result)
+        if short_by is not None:
+            # Of depths that may be less, those that may be within `farthest` count.
+            near = np.where(image - short_by > self.farthest, np.float32(np.nan), image)
+            cloud = _core.depth_image(near, pose=where, nearest=self.nearest, **lens)
+            self._widen(row, cloud, poses, short_by * _lengths_of_rays(image.shape, **lens))
         if self.check:
-            local = _seen_depth(image, lens) if kind == recordings.IMAGE else scenes.as_points(points)
+            local = scenes.as_points(points) if kind == recordings.CLOUD else _seen_depth(image, lens)
             # The robot is put into the sensor's frame: it has fewer numbers than the points.
             row.checked = by_numpy(self.robot, recordings.inverse(where) @ poses, local, self._counting)
             if not agree(row):
-                row.note = f"NumPy says {row.checked:.9g} m"
+                row.say(f"NumPy says {row.checked:.9g} m")
         return Sight(self.robot, poses, result, seen)
 
     def _counting(self, local):
@@ -251,10 +299,26 @@ class Watch:
             near &= far > 0
         return local if near.all() else local[near]
 
+    def _widen(self, row, cloud, poses, radii):
+        """Widens a row's bracket by how far points may be from where they are: radii, one a pixel, metres."""
+        if row.state == "no_data":
+            return
+        self.ask_certain = self.ask_certain or _core.Query(self.robot, _core.CertainDistance(), self.device)
+        radii = np.nextafter(radii.astype(np.float32), np.float32(np.inf))
+        certain = self.ask_certain(clouds=[_core.uncertain(cloud, radii)], poses=poses)
+        row.lower = min(row.lower, float(certain.lower))
+        if isinstance(self.question, _core.MinDistanceSupported):  # of other points than the nearest
+            row.upper += float(radii.max())
+            row.state = "possible" if row.state == "collision" else row.state
+        else:
+            row.upper = max(row.upper, float(certain.upper))
+        if row.state != certain.state.name:
+            row.state = "possible"
+
     def _camera_pose(self, frame, stamp, values):
         # Where no transform can place the sensor, its frame may be a link of the robot.
         if not self.transforms.knows(frame) and self._own_link(frame):
-            return self._link(frame, np.array(values, float))
+            return self._link(frame, values)
         return self.transforms.at(self._base(), frame, stamp, self.max_age)
 
     def _write(self, row, result):
@@ -298,22 +362,23 @@ def play(
     each=None,
     only=None,
 ):
-    """Yields a Row for each PointCloud2 and depth Image of a recording: how far the robot was from what was seen.
+    """Gives a Row for each PointCloud2 and depth image of a recording: how far the robot was from what was seen.
 
     path: an MCAP file, a rosbag2 folder or database, or a ROS 1 bag; or recordings.Messages. It is read as rows are
     asked for.
     robot: a Robot; or the name of its URDF file, or a dict of Robot.from_urdf's arguments.
-    topics: of clouds and images; all PointCloud2 and all Images of 16UC1 or 32FC1, unless given.
+    topics: of clouds and images; all PointCloud2 and all Images and CompressedImages of 16UC1 or 32FC1, unless given.
     question: MinDistance(), MinDistancePerPart() or MinDistanceSupported(...).
     base_frame: the frame in which the robot's root link stands; the root link itself, unless given.
     joint_topic: of the JointStates; needed if there are several. joints: {name: value} of those that no JointState
-    names. max_age: seconds. Joints and transforms are interpolated at a frame's stamp. What is farther from it is not
+    names, or the values of all. max_age: seconds. Joints and transforms are interpolated at a frame's stamp. What is farther from it is not
     used. camera_info: the topic of the CameraInfo, or {image's topic: topic}; `camera_info` beside the image, unless
     given. nearest, farthest: metres from the sensor between which points count. zero_is_missing: a point at the sensor
     is none. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
-    each: is called with each row that was asked and its Sight, whose scene() can be drawn. only: {(stamp, topic)} of the
-    frames that are asked; the rows of others are "unknown".
+    each: is called with each row that was asked and its Sight, whose scene() can be drawn. only: {(stamp_ns, topic)} of
+    the frames that are asked; the rows of others are "unknown".
 
+    The rows are an iterator, whose `notes` name the topics of sensors that are not read, and what else was refused.
     A frame that cannot be asked (a transform is missing, say) has the state "unknown", and a note. A robot that has no
     URDF is placed by the transforms of frames that are named as its parts. Raises recordings.Damaged after the last
     whole frame of a damaged file.
@@ -341,7 +406,7 @@ def play(
         if recording.damage:  # so what is missing may be what is lost
             raise Damaged(f"{recording.path}: {recording.damage}; {error}") from None
         raise
-    return _rows(recording, watch, frames, others, named=topics is not None)
+    return Played(recording, watch, frames, others, named=topics is not None)
 
 
 def _chosen(recording, watch, topics, joint_topic, tf_topics):
@@ -350,18 +415,20 @@ def _chosen(recording, watch, topics, joint_topic, tf_topics):
     by_kind = collections.defaultdict(list)
     for topic, kind in sorted(of.items()):
         by_kind[kind].append(topic)
-    seeing = (recordings.CLOUD, recordings.IMAGE)
-    has = f"{recording.path} has: {', '.join(f'{t} ({k})' for t, k in sorted(of.items())) or 'no topic'}"
+    read = [topic for topic in of if recordings.is_read(recording, topic)]
+    has = f"{recording.path} has: {', '.join(_described(recording, t) for t in sorted(of)) or 'no topic'}"
     if topics is None:
-        frames = [topic for kind in seeing for topic in by_kind[kind]]
+        frames = [topic for kind in recordings.SEEING for topic in by_kind[kind] if topic in read]
     else:
         frames = [topics] if isinstance(topics, str) else list(topics)
         for topic in frames:
-            if of.get(topic) not in seeing:
+            if of.get(topic) not in recordings.SEEING:
                 what = f"is a {of[topic]}, not a PointCloud2 or an Image" if topic in of else "is not in the recording"
                 raise ValueError(f"the topic {topic} {what}; {has}")
+            if topic not in read:
+                raise ValueError(f"the topic {_described(recording, topic)} is in no encoding that is read; {has}")
     if not frames:
-        raise ValueError(f"there is no PointCloud2 and no Image to play; {has}")
+        raise ValueError(f"there is no PointCloud2 and no depth Image to play; {has}")
     others = []
     if watch.by_joints and watch.moving:
         named = [joint_topic] if isinstance(joint_topic, str) else list(joint_topic or by_kind[recordings.JOINTS])
@@ -384,11 +451,55 @@ def _chosen(recording, watch, topics, joint_topic, tf_topics):
         trees = [topic for topic in found if topic in ("/tf", "/tf_static")] or found
         if len({topic.rsplit("/", 1)[0] for topic in trees}) > 1:
             raise ValueError(f"there are several trees of transforms, so say which (tf_topics): {', '.join(trees)}")
-    infos = {watch.info_topic(topic) for topic in frames if of[topic] == recordings.IMAGE}
-    return frames, [*others, *trees, *(topic for topic in sorted(infos) if of.get(topic) == recordings.CAMERA)]
+    infos = {watch.info_topic(topic) for topic in frames if of[topic] != recordings.CLOUD}
+    others += [*trees, *(topic for topic in sorted(infos) if of.get(topic) == recordings.CAMERA)]
+    for topic in others:
+        if topic not in read:
+            raise ValueError(f"the topic {_described(recording, topic)} is in no encoding that is read; {has}")
+    return frames, others
 
 
-def _rows(recording, watch, frames, others, named):
+def _described(recording, topic):
+    """A topic with its type, and its encoding if that is not read."""
+    encoding = "" if recordings.is_read(recording, topic) else f", encoded as {recording.encodings[topic]!r}"
+    return f"{topic} ({recording.topics[topic]}{encoding})"
+
+
+class Played:
+    """The rows of play(), one after another. notes: sentences; there may be more after the last row."""
+
+    def __init__(self, recording, watch, frames, others, named):
+        self._watch = watch
+        self._pictures = {}
+        self._unread = [
+            _described(recording, topic)
+            for topic, kind in sorted(recording.topics.items())
+            if topic not in frames and not named and recordings.SENSED.search(kind.rsplit("/", 1)[-1])
+            if kind != recordings.CAMERA
+        ]
+        self._rows = _rows(recording, watch, frames, others, named, self._pictures)
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        return next(self._rows)
+
+    def close(self):
+        """Closes the recording before its end."""
+        self._rows.close()
+
+    @property
+    def notes(self):
+        pictures = [f"{topic} ({what})" for topic, what in sorted(self._pictures.items())]
+        found = [f"not read: {', '.join(self._unread)}"] if self._unread else []
+        if pictures:
+            found.append(f"no depth, so not played: {', '.join(pictures)}")
+        found += [f"{said} ({count} times)" if count > 1 else said for said, count in self._watch.notes.items()]
+        return found + self._watch.transforms.refused
+
+
+def _rows(recording, watch, frames, others, named, pictures):
     with recording:
         # Static transforms always hold, also those that were said late.
         try:
@@ -398,7 +509,6 @@ def _rows(recording, watch, frames, others, named):
             pass  # it is met again below
         waiting = collections.deque()
         depths = set(frames) if named else {topic for topic in frames if recording.topics[topic] == recordings.CLOUD}
-        ignored = set()
         failed = None
         messages = recording.messages([*frames, *others])
         while True:
@@ -410,7 +520,7 @@ def _rows(recording, watch, frames, others, named):
                 yield watch.row(*waiting.popleft()[1:])
             if each is None:
                 break
-            if each.topic in ignored:
+            if each.topic in pictures:
                 continue
             try:
                 message = each.decode()
@@ -420,33 +530,43 @@ def _rows(recording, watch, frames, others, named):
                     continue
                 while waiting:
                     yield watch.row(*waiting.popleft()[1:])
-                yield Row(each.log_time / 1e9, each.topic, "", note=str(error))
+                yield Row(each.log_time, each.topic, "", note=str(error))
                 continue
             if each.topic in others:
                 watch.take(each.topic, each.type, message)
             else:
                 if each.topic not in depths:
-                    if message.encoding not in ("16UC1", "32FC1"):  # a picture, which nobody asked about
-                        ignored.add(each.topic)
+                    if not recordings.is_depth(each.type, message):  # a picture, which nobody asked about
+                        pictures[each.topic] = message.format if each.type == recordings.COMPRESSED else message.encoding
                         continue
                     depths.add(each.topic)
                 waiting.append((each.log_time, each.topic, each.type, message))
         if failed is None and not depths:
             failed = ValueError(
-                f"{recording.path} has neither a PointCloud2 nor an Image of 16UC1 or 32FC1; say topics to play others"
+                f"{recording.path} has neither a PointCloud2 nor an image of 16UC1 or 32FC1"
+                + (f", only {', '.join(f'{t} ({what})' for t, what in pictures.items())}" if pictures else "")
+                + "; say topics to play others"
             )
         if failed:
             raise failed
 
 
+class Rows(list):
+    """A list of rows, with the notes about their recording."""
+
+    notes = ()
+
+
 def rows(path, robot, **options):
     """play() as a list, for workers: of a damaged recording the last row is "unknown", and its note says the damage."""
-    found = []
+    found, played = Rows(), None
     try:
-        found.extend(play(path, robot, **options))
+        played = play(path, robot, **options)
+        found.extend(played)
     except Damaged as error:
         # extend() keeps what was yielded before the error.
-        found.append(Row(found[-1].stamp if found else math.nan, "", "", note=str(error)))
+        found.append(Row(found[-1].stamp_ns if found else None, "", "", note=str(error)))
+    found.notes = played.notes if played else []
     return found
 
 
@@ -457,6 +577,14 @@ def _seen_depth(image, lens):
     """The points of an image in the camera's frame, by NumPy in double."""
     scale = 0.001 if image.dtype.kind == "u" else 1.0
     return scenes.deprojected(image, scale, lens.get("intrinsics"), lens.get("rays"))
+
+
+def _lengths_of_rays(shape, intrinsics=None, rays=None):
+    """How long each pixel's ray is at z = 1, (rows, columns); 0 where there is none."""
+    if rays is None:
+        v, u = np.indices(shape)
+        rays = np.stack([(u - intrinsics[2]) / intrinsics[0], (v - intrinsics[3]) / intrinsics[1]], axis=-1)
+    return np.nan_to_num(np.sqrt(1 + np.square(np.asarray(rays, float)).sum(-1)))
 
 
 def _lengths(vectors):
@@ -502,12 +630,9 @@ def agree(row):
 
 # ---- tables ---------------------------------------------------------------------------------------------------------
 
-COLUMNS = [each.name for each in dataclasses.fields(Row)]
-
-
 def flat(row):
     """A Row as a line of a table: a dictionary of numbers and words."""
-    flat = dataclasses.asdict(row)
+    flat = {"stamp": row.stamp, **dataclasses.asdict(row)}
     flat["dropped"] = json.dumps(row.dropped)
     flat["parts"] = None if row.parts is None else json.dumps(row.parts)
     for name in ("at", "nearest"):
@@ -522,7 +647,7 @@ class Csv:
 
     def __init__(self, path):
         self.file = open(path, "w", newline="", encoding="utf-8")
-        self.table = csv.DictWriter(self.file, list(flat(Row(0.0, "", ""))))
+        self.table = csv.DictWriter(self.file, list(flat(Row(0, "", ""))))
         self.table.writeheader()
 
     def write(self, row):
@@ -545,11 +670,11 @@ class Parquet:
         except ImportError as error:
             raise recordings.needs("parquet", error) from None
         self.pyarrow = pyarrow
-        whole, text = ("point", "seen", "valid"), ("topic", "frame", "state", "link", "note", "dropped", "parts")
+        whole, text = ("stamp_ns", "point", "seen", "valid"), ("topic", "frame", "state", "link", "note", "dropped", "parts")
         self.schema = pyarrow.schema(
             [
                 (name, pyarrow.int64() if name in whole else pyarrow.string() if name in text else pyarrow.float64())
-                for name in flat(Row(0.0, "", ""))
+                for name in flat(Row(0, "", ""))
             ]
         )
         self.file = pyarrow.parquet.ParquetWriter(pathlib.Path(path), self.schema)

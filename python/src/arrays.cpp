@@ -35,6 +35,22 @@ std::size_t count_of(nb::handle given, const char* argument) {
   return value;
 }
 
+std::size_t index_of(nb::handle given, const char* argument) {
+  const auto wrong = [&](const char* why) {
+    return std::string("clearance: ") + argument + " is " + nb::cast<std::string>(nb::repr(given)) + why;
+  };
+  if (!PyIndex_Check(given.ptr())) throw nb::type_error(wrong(", which is no whole number").c_str());
+  const nb::object number = nb::steal(PyNumber_Index(given.ptr()));
+  if (!number.is_valid()) nb::raise_python_error();
+  std::size_t value = 0;
+  if (!nb::try_cast(number, value))
+    throw nb::index_error(wrong(number.attr("__lt__")(0).is(nb::bool_(true))
+                                    ? ", and numbers begin at 0"
+                                    : ", and there is nothing of such a number")
+                              .c_str());
+  return value;
+}
+
 std::array<double, 3> three_of(nb::handle given, const char* argument) {
   std::array<double, 3> value{};
   try {

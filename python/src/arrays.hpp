@@ -20,6 +20,9 @@ std::string shape_and_type(nb::handle given);
 /// Numbers from Python. Throw std::invalid_argument, which names the argument.
 double number_of(nb::handle given, const char* argument);
 std::size_t count_of(nb::handle given, const char* argument);
+/// The same for the number of something in an answer: IndexError if it is negative or beyond all numbers, TypeError if
+/// it is none.
+std::size_t index_of(nb::handle given, const char* argument);
 std::array<double, 3> three_of(nb::handle given, const char* argument);
 /// A file's name, from a string or a path.
 std::string file_of(nb::handle given, const char* argument);

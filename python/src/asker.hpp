@@ -2,8 +2,8 @@
 #pragma once
 // What the modules hand to one another: a question prepared for one robot on one backend, whatever its trees.
 
-#include <clearance/frame/bracket.hpp>
-#include <clearance/frame/clouds.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>

@@ -7,7 +7,7 @@
 #include "robot.hpp"
 #include "seen_array.hpp"
 
-#include <clearance/frame/frame.hpp>
+#include <clearance/frames/frame.hpp>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
@@ -117,6 +117,11 @@ intrinsics camera_of(nb::handle given) {
   return {k[0], k[1], k[2], k[3]};
 }
 
+/// Do a table's rays, which are pairs of floats, follow one another?
+bool without_gaps(const seen_array& table) {
+  return table.strides[2] == 4 && table.strides[1] == 8 && table.strides[0] == 8 * std::int64_t(table.shape[1]);
+}
+
 template <class Image>
 void limit(Image& image, double nearest, double farthest, bool minus_infinity_is_near) {
   image.nearest = real(nearest), image.farthest = real(farthest), image.minus_infinity_is_near = minus_infinity_is_near;
@@ -124,12 +129,12 @@ void limit(Image& image, double nearest, double farthest, bool minus_infinity_is
 
 }  // namespace
 
-any_cloud near_robot(const cloud_object& object, std::span<const Eigen::Isometry3d> poses) {
-  if (!object.far || poses.empty()) return object.cloud;
+any_cloud near_robot(const cloud_object& object, const Eigen::Vector3d& robot) {
+  if (!object.far) return object.cloud;
   auto cloud = std::get<placed<strided_points<double>>>(object.cloud);
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Eigen::Isometry3d& pose : poses) middle += pose.translation() / double(poses.size());
-  const Eigen::Vector3d origin = (cloud.pose.inverse() * middle).array().round();
+  // Coarse, and of what stays where joints move: so each of many configurations has the answer that it has alone.
+  constexpr double grid = 16;
+  const Eigen::Vector3d origin = ((cloud.pose.inverse() * robot) / grid).array().round() * grid;
   if (!(origin.cwiseAbs().maxCoeff() > 32) || !(origin.cwiseAbs().maxCoeff() < 1 << 24)) return cloud;
   cloud.source.origin = {real(origin.x()), real(origin.y()), real(origin.z())};
   const Eigen::Vector3d sensor = object.sensor - origin;
@@ -195,16 +200,18 @@ cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, 
   if (intrinsics.is_none() == rays.is_none())
     throw std::invalid_argument("clearance: a depth image needs intrinsics, or rays, one of them");
   if (!(farthest >= nearest)) throw std::invalid_argument("clearance: farthest is less than nearest");
-  if (seen.strides[0] % std::int64_t(seen.item) != 0)
+  const bool empty = seen.shape[0] == 0 || seen.shape[1] == 0;  // whose steps mean nothing
+  if (!empty && seen.strides[0] % std::int64_t(seen.item) != 0)
     throw std::invalid_argument("clearance: depth has rows that begin in the middle of a pixel; copy it first");
   if (nb::hasattr(depth, "mask") && nb::hasattr(depth, "filled"))
     throw std::invalid_argument("clearance: depth is a masked array; give depth.filled(0), which counts as missing");
-  if (seen.shape[1] > 1 && seen.strides[1] != std::int64_t(seen.item))
+  if (!empty && seen.shape[1] > 1 && seen.strides[1] != std::int64_t(seen.item))
     throw std::invalid_argument("clearance: depth has pixels that do not follow one another in a row; copy it first");
   const double unit = scale.is_none() ? (integers ? 0.001 : 1.0) : number_of(scale, "scale");
   if (!(unit > 0 && std::isfinite(unit))) throw std::invalid_argument("clearance: scale is metres per unit, above 0");
   const auto height = std::uint32_t(seen.shape[0]), width = std::uint32_t(seen.shape[1]);
-  const auto row = std::uint32_t(step_of(height > 1 ? seen.strides[0] : width * seen.item, "depth") / seen.item);
+  const auto row =
+      std::uint32_t(step_of(height > 1 && !empty ? seen.strides[0] : width * seen.item, "depth") / seen.item);
   cloud_object made;
   const Eigen::Isometry3d where = pose_of(pose, "pose");
   const auto put = [&]<class Pixel>(const Pixel* pixels) {
@@ -217,8 +224,7 @@ cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, 
     }
     const seen_array table = array_seen(rays, "rays", "an array of shape (rows, columns, 2) and dtype float32");
     if (table.shape.size() != 3 || table.shape[0] != height || table.shape[1] != width || table.shape[2] != 2 ||
-        table.kind != 'f' || table.item != 4 || table.strides[2] != 4 || table.strides[1] != 8 ||
-        table.strides[0] != 8 * std::int64_t(width) || table.device != seen.device)
+        table.kind != 'f' || table.item != 4 || !(empty || without_gaps(table)) || table.device != seen.device)
       throw std::invalid_argument(
           "clearance: rays is an array of shape (" + std::to_string(height) + ", " + std::to_string(width) +
           ", 2) and dtype float32, without gaps and beside the image, not " + shape_and_type(rays));
@@ -287,8 +293,8 @@ cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, doub
 /// Of (rows, columns, 2) float32 in host memory.
 double half_pixel(nb::handle rays) {
   const seen_array table = array_seen(rays, "rays", "an array of shape (rows, columns, 2) and dtype float32");
-  if (table.shape.size() != 3 || table.shape[2] != 2 || table.kind != 'f' || table.item != 4 || table.strides[2] != 4 ||
-      table.strides[1] != 8 || table.strides[0] != 8 * std::int64_t(table.shape[1]) || table.device != on_the_host)
+  if (table.shape.size() != 3 || table.shape[2] != 2 || table.kind != 'f' || table.item != 4 || !without_gaps(table) ||
+      table.device != on_the_host)
     throw std::invalid_argument(
         "clearance: rays is an array on the cpu of shape (rows, columns, 2) and dtype float32, without gaps, not " +
         shape_and_type(rays));

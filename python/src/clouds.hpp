@@ -29,8 +29,8 @@ struct cloud_object {
   nb::object kept, also_kept;
 };
 
-/// For a robot at these places: doubles far from (0, 0, 0) become floats relative to a place near the robot.
-any_cloud near_robot(const cloud_object& cloud, std::span<const Eigen::Isometry3d> poses);
+/// For a robot at this place: doubles far from (0, 0, 0) become floats relative to a place near it.
+any_cloud near_robot(const cloud_object& cloud, const Eigen::Vector3d& robot);
 
 cloud_object points_of(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
                        bool zero_is_missing);

@@ -6,19 +6,37 @@
 #include "robot.hpp"
 #include "sensor_messages.hpp"
 
+#include <clearance/ground/numbered.hpp>
+
 template <class E>
 void bind_enum(nb::module_& m) {
-  nb::enum_<E> bound(m, declared<E>::name, declared<E>::doc);
+  nb::enum_<E> bound(m, declared<E>::name, declared<E>::doc, nb::is_arithmetic());  // arrays have their numbers
   std::apply([&](const auto&... v) { (bound.value(v.name, v.value), ...); }, declared<E>::values);
 }
 
 NB_MODULE(_core, m) {
+  // At the interpreter's end a daemon thread still holds what it uses, which is no leak and nothing that a user could
+  // mend. test_nothing_leaks counts memory while a program runs.
+  nb::set_leak_warnings(false);
   m.attr("none") = clearance::none;
   m.attr("__version__") = CLEARANCE_VERSION_TEXT;
   nb::class_<clearance::distance_certainty>(m, "DistanceCertainty",
                                             "How certain each distance of an answer is: lower() of it is proven.")
-      .def("lower", &clearance::distance_certainty::lower, nb::arg("distance"),
-           "The solid is at least this far away, metres; 0 if nothing more is certain.")
+      .def(
+          "lower",
+          [](const clearance::distance_certainty& c, given_for<double> distance, nb::handle part) {
+            const auto metres = clearance::real(argument_of(distance, "distance"));
+            if (part.is_none()) return c.lower(metres);
+            const std::size_t which = index_of(part, "part");
+            if (!c.slops.empty()) clearance::check_number("part", which, c.slops.size());
+            return c.lower(metres, which);
+          },
+          nb::arg("distance").none(), nb::arg("part").none() = nb::none(),
+          "The solid is at least this far away, metres; 0 if nothing more is certain. part: whose distance it is; "
+          "where "
+          "the answer keeps each part's gap and tolerance, only that part's are taken off, and IndexError is raised "
+          "for "
+          "a part that is not there.")
       .def("__repr__", [](const clearance::distance_certainty& c) {
         return "DistanceCertainty(1 m is certainly at least " + std::to_string(c.lower(1)) + " m)";
       });

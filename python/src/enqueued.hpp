@@ -32,7 +32,7 @@ struct room_sizes {
 
   std::size_t parts() const { return of_robot; }
   template <class T>
-  T* room(std::size_t n) const {
+  T* space(std::size_t n) const {
     taken.push_back(n);
     return reinterpret_cast<T*>(taken.size() * alignof(std::max_align_t));
   }
@@ -48,24 +48,24 @@ template <class Q>
 typename out_of<Q>::type rooms_of(const Q& question, const room_sizes& a, std::size_t capacity) {
   using out = typename out_of<Q>::type;
   if constexpr (requires { typename Q::searched; }) {
-    return a.template room<std::remove_pointer_t<out>>(results_of<Q>(a.configurations, a.parts()));
+    return a.template space<std::remove_pointer_t<out>>(results_of<Q>(a.configurations, a.parts()));
   } else if constexpr (requires(out to) { to.capacity; }) {
-    return {a.template room<clearance::pair_distance>(capacity), capacity, a.template room<unsigned long long>(1),
-            a.template room<clearance::point_counts>(1)};
-  } else if constexpr (requires { question.room(a); }) {
-    return question.room(a);
+    return {a.template space<clearance::pair_distance>(capacity), capacity, a.template space<unsigned long long>(1),
+            a.template space<clearance::point_counts>(1)};
+  } else if constexpr (requires { question.space(a); }) {
+    return question.space(a);
   } else if constexpr (requires(out to) { to.distances; }) {
-    out to{{a.template room<clearance::real>(a.points)}, a.template room<clearance::point_counts>(1)};
+    out to{{a.template space<clearance::real>(a.points)}, a.template space<clearance::point_counts>(1)};
     if (question.which)
-      to.distances.part = a.template room<std::uint32_t>(a.points),
-      to.distances.primitive = a.template room<std::uint32_t>(a.points);
+      to.distances.part = a.template space<std::uint32_t>(a.points),
+      to.distances.primitive = a.template space<std::uint32_t>(a.points);
     return to;
   } else if constexpr (requires(out to) { to.witnesses; }) {
-    return {a.template room<clearance::part_minimum>(a.parts()), a.template room<clearance::part_witness>(a.parts())};
+    return {a.template space<clearance::part_minimum>(a.parts()), a.template space<clearance::part_witness>(a.parts())};
   } else if constexpr (requires(out to) { to.minima; }) {
-    return {a.template room<clearance::min_distance_result>(1), a.template room<clearance::part_minimum>(a.parts())};
+    return {a.template space<clearance::min_distance_result>(1), a.template space<clearance::part_minimum>(a.parts())};
   } else {
-    return a.template room<std::remove_pointer_t<out>>(1);
+    return a.template space<std::remove_pointer_t<out>>(1);
   }
 }
 

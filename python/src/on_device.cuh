@@ -4,7 +4,7 @@
 
 #include "prepared.hpp"
 
-#include <clearance/backend/own_stream.cuh>
+#include <clearance/backends/own_stream.cuh>
 #include <clearance/device.cuh>
 #include <clearance/plan/configurations.hpp>
 

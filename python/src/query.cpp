@@ -30,6 +30,19 @@ struct seen_cloud {
   const std::optional<cloud_doubts> doubts;
 };
 
+/// The names of the questions about uncertain clouds.
+std::string takers_of_uncertain() {
+  std::vector<std::string> names;
+  for_each_declared([&]<class T>() {
+    if constexpr (declared<T>::question)
+      if (!std::is_same_v<typename cloud_about<T>::type, any_cloud>) names.emplace_back(declared<T>::name);
+  });
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  return text;
+}
+
 /// Throws std::invalid_argument if a cloud is uncertain, and Q is not about that.
 template <class Q>
 clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
@@ -43,18 +56,21 @@ clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
             made.push_back(placed{uncertain(bare.source, each.doubts->noise, each.doubts->of), bare.pose});
           else
             throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
-                                        declared<Q>::name +
-                                        " takes points where they were measured; CertainDistance, InCollision, "
-                                        "Zones, Unseen, InCollisions, MinDistances and MinDistancesPerPart take "
-                                        "uncertain ones");
+                                        declared<Q>::name + " takes points where they were measured; " +
+                                        takers_of_uncertain() + " take uncertain ones");
         },
         each.cloud);
   return made;
 }
 
+/// Is Q about many configurations?
+template <class Q>
+inline constexpr bool asks_many = requires { typename Q::searched; };
+
 /// A query in Python, whatever its question.
 struct any_query {
   virtual ~any_query() = default;
+  virtual bool about_many() const = 0;  ///< Configurations.
   virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
                          nb::handle question, std::optional<void*> stream) = 0;
   virtual nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
@@ -68,8 +84,11 @@ class query_of final : public any_query {
  public:
   query_of(std::shared_ptr<robot_model> robot, const Q& question, int device)
       : robot_(std::move(robot)), standing_(question), device_(device) {
+    check_options();
     idle_.push_back(make());
   }
+
+  bool about_many() const override { return asks_many<Q>; }
 
   nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds, nb::handle question,
                  std::optional<void*> stream) override {
@@ -84,7 +103,7 @@ class query_of final : public any_query {
       give_back(mine);
     }
     if constexpr (declared_struct<typename Q::result>) {
-      return nb::cast(answered<typename Q::result>{std::move(result), robot_->names});
+      return nb::cast(answered<typename Q::result>{std::move(result), {robot_->names, digest_of(poses)}});
     } else {
       using element = typename Q::result::value_type;
       auto* const kept = new typename Q::result(std::move(result));
@@ -128,6 +147,13 @@ class query_of final : public any_query {
                                .c_str());
     return nb::cast<const asked<Q>&>(question).question;
   }
+  /// Throws what asking would throw about options that no frame could mend: it asks about a frame without points.
+  void check_options() const {
+    Q q = standing_;
+    if constexpr (requires { q.labels; }) q.labels = {};  // of a frame's points
+    if constexpr (!requires { q.minima; })                // of a frame's pairs
+      ask_on_host(robot_->trees, q)->ask(std::vector(robot_->parts(), Eigen::Isometry3d::Identity()), {}, q);
+  }
   std::shared_ptr<asker<Q>> make() const {
     if (device_ == on_the_host) return ask_on_host(robot_->trees, standing_);
     return ask_on_device(*robot_, standing_, device_);
@@ -161,7 +187,6 @@ struct asked_frame {
   std::vector<seen_cloud> seen;
   nb::list kept;
   bool on_device = false;
-  bool many = false;  ///< Joints gave more than one configuration.
 };
 
 struct query_object {
@@ -185,21 +210,28 @@ struct query_object {
   }
 
   /// `stays`: the device reads clouds where they are, after this.
-  asked_frame look(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
-                   nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
-                   nb::handle camera_pose, nb::handle clouds, bool ignore_limits, bool stays) const {
+  asked_frame frame_of(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
+                       nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                       nb::handle camera_pose, nb::handle clouds, joint_reading how, bool stays) const {
     asked_frame made;
     auto& places = made.places;
+    Eigen::Vector3d middle;
     if (!poses.is_none()) {
-      if (!joints.is_none() || !base.is_none())
-        throw std::invalid_argument("clearance: poses are given, so joints and base cannot be");
+      if (!joints.is_none() || !base.is_none() || how.rest)
+        throw std::invalid_argument("clearance: poses are given, so joints, base and rest cannot be");
       places = poses_of(poses, "poses");
-    } else if (joints.is_none() && !robot->description && robot->parts() == 1) {
-      places = {pose_of(base, "base")};
+      middle = places.empty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(places[0].translation());
     } else {
-      places = placed_parts(*robot, joints, pose_of(base, "base"), ignore_limits);
+      middle = pose_of(base, "base").translation();
+      auto [at, shape] = robot_at(*robot, joints, base, how);
+      places = std::move(at);
+      const std::size_t count = robot->parts() == 0 ? 1 : places.size() / robot->parts();
+      if (count != 1 && !query->about_many())
+        throw std::invalid_argument("clearance: joints gives " + std::to_string(count) + " configurations, so " +
+                                    std::to_string(places.size()) + " poses of " + std::to_string(robot->parts()) +
+                                    " parts, and " + text_of(question.type().attr("__name__")) +
+                                    " asks about one; MinDistances and its kin ask about many");
     }
-    made.many = !joints.is_none() && places.size() > robot->parts();
     const auto put = [&](const cloud_object& cloud, const char* argument) {
       if (cloud.device != on_the_host && device == on_the_host)
         throw std::invalid_argument(std::string("clearance: ") + argument +
@@ -221,7 +253,7 @@ struct query_object {
                                     device_name(cloud.doubts->device) + ", and this query asks on " +
                                     device_name(device) + ", which reads them in place");
       made.on_device |= cloud.device != on_the_host || (radii && device != on_the_host);
-      made.seen.push_back({near_robot(cloud, places), cloud.doubts});
+      made.seen.push_back({near_robot(cloud, middle), cloud.doubts});
       for (const nb::object& memory : {cloud.kept, cloud.also_kept})
         if (memory) made.kept.append(memory);
     };
@@ -258,41 +290,26 @@ struct query_object {
     return made;
   }
 
-  template <class Ask>
-  nb::object asked_about(const asked_frame& frame, const Ask& ask) const {
-    try {
-      return ask();
-    } catch (const std::invalid_argument& error) {
-      if (!frame.many) throw;
-      throw std::invalid_argument(std::string(error.what()) + " (joints gives " +
-                                  std::to_string(frame.places.size() / robot->parts()) +
-                                  " configurations; MinDistances and its kin ask about many)");
-    }
-  }
-
   nb::object operator()(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
                         nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
                         nb::handle camera_pose, nb::handle clouds, nb::handle stream, nb::handle other,
-                        bool ignore_limits) {
-    const asked_frame frame = look(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
-                                   camera_pose, clouds, ignore_limits, false);
-    return asked_about(frame,
-                       [&] { return query->ask(frame.places, frame.seen, other, stream_of(stream, frame.on_device)); });
+                        bool ignore_limits, bool rest) {
+    const asked_frame frame = frame_of(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
+                                       camera_pose, clouds, {ignore_limits, rest}, false);
+    return query->ask(frame.places, frame.seen, other, stream_of(stream, frame.on_device));
   }
 
   nb::object enqueue(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
                      nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
                      nb::handle camera_pose, nb::handle clouds, nb::handle out, nb::handle capacity, nb::handle stream,
-                     nb::handle other, bool ignore_limits) {
+                     nb::handle other, bool ignore_limits, bool rest) {
     if (device == on_the_host)
       throw std::invalid_argument("clearance: enqueue is for a query on a CUDA device, and this one asks on the cpu");
-    const asked_frame frame = look(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
-                                   camera_pose, clouds, ignore_limits, true);
+    const asked_frame frame = frame_of(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
+                                       camera_pose, clouds, {ignore_limits, rest}, true);
     std::optional<std::size_t> pairs;
     if (!capacity.is_none()) pairs = count_of(capacity, "capacity");
-    return asked_about(frame, [&] {
-      return query->enqueue(frame.places, frame.seen, other, *stream_of(stream, true), out, pairs, frame.kept);
-    });
+    return query->enqueue(frame.places, frame.seen, other, *stream_of(stream, true), out, pairs, frame.kept);
   }
 
   /// The protocols' numbers, or an object of torch or CuPy. Without one, arrays on a device were handed over in order
@@ -328,9 +345,11 @@ void bind_query(nb::module_& m) {
            nb::arg("rays").none() = nb::none(), nb::arg("depth_scale").none() = nb::none(),
            nb::arg("camera_pose").none() = nb::none(), nb::arg("clouds").none() = nb::none(),
            nb::arg("stream").none() = nb::none(), nb::arg("question").none() = nb::none(),
-           nb::arg("ignore_limits") = false,
+           nb::arg("ignore_limits") = false, nb::arg("rest") = false,
            "Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with "
-           "base (world-from-base); or poses (parts, 4, 4), world-from-part. Questions about many configurations take "
+           "base (world-from-base); or poses (parts, 4, 4), world-from-part; rest: what nothing is said of is at rest, "
+           "or "
+           "at the base. Questions about many configurations take "
            "joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with "
            "intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: "
            "other options for this call. Raises ValueError with a sentence that names the argument.")
@@ -342,7 +361,7 @@ void bind_query(nb::module_& m) {
            nb::arg("camera_pose").none() = nb::none(), nb::arg("clouds").none() = nb::none(),
            nb::arg("out").none() = nb::none(), nb::arg("capacity").none() = nb::none(),
            nb::arg("stream").none() = nb::none(), nb::arg("question").none() = nb::none(),
-           nb::arg("ignore_limits") = false,
+           nb::arg("ignore_limits") = false, nb::arg("rest") = false,
            "The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream "
            "waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; "
            "None: "

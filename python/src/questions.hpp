@@ -114,7 +114,7 @@ nb::object option_of(const asked<Q>& self, nb::handle owner, const auto& at) {
   else if constexpr (declared_struct<type>)
     return nb::cast(asked<type>{self.question.*at, {}});
   else
-    return to_python(self.question.*at, owner, nullptr);
+    return to_python(self.question.*at, owner, {});
 }
 
 template <class Q>

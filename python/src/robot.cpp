@@ -6,6 +6,7 @@
 #include "device_entry.hpp"
 #include "values.hpp"
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/io/field_cache.hpp>
 #include <clearance/io/jacobian.hpp>
 #include <clearance/io/mesh.hpp>
@@ -18,6 +19,9 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+
+#include <functional>
+#include <numeric>
 
 using namespace clearance;
 
@@ -46,11 +50,10 @@ model_options options_of(const std::string& model, nb::handle spheres, bool cach
 /// What the caller changes afterwards changes no recipe.
 nb::object copy_of(nb::handle given) { return nb::module_::import_("copy").attr("deepcopy")(given); }
 
-const io::body& body_of(const robot_model& robot, std::size_t part) {
-  if (part >= robot.parts())
-    throw std::invalid_argument("clearance: the robot has " + std::to_string(robot.parts()) +
-                                " parts, and none of number " + std::to_string(part));
-  return robot.bodies[part];
+const io::body& body_of(const robot_model& robot, given_for<std::size_t> part) {
+  const std::size_t k = argument_of(part, "part");
+  check_number("part", k, robot.parts());
+  return robot.bodies[k];
 }
 
 /// Builds trees of bodies, without the interpreter.
@@ -77,15 +80,24 @@ void make(robot_model& made, const std::vector<io::body_source>& sources, const 
   build(made);
 }
 
+/// "y" or "z"; none for None.
+std::optional<io::gltf_axis> gltf_axis_of(const std::optional<std::string>& up) {
+  if (up && *up != "y" && *up != "z")
+    throw std::invalid_argument("clearance: gltf_up is \"" + *up + "\"; it is \"y\", \"z\" or None");
+  return up ? std::optional(*up == "y" ? io::gltf_axis::y : io::gltf_axis::z) : std::nullopt;
+}
+
 std::shared_ptr<robot_model> from_urdf(nb::handle urdf, const std::string& model, nb::object spheres,
                                        const std::string& geometry, const nb::dict& packages,
-                                       const std::vector<std::string>& exclude_links, bool cache) {
+                                       const std::vector<std::string>& exclude_links, bool cache,
+                                       const std::optional<std::string>& gltf_up) {
   const model_options options = options_of(model, spheres, cache);
   if (geometry != "collision" && geometry != "visual")
     throw std::invalid_argument("clearance: geometry is \"" + geometry + "\"; it is \"collision\" or \"visual\"");
   const auto made = std::make_shared<robot_model>();
   const std::string file = file_of(urdf, "file");
   io::robot_options reading;
+  reading.gltf_up = gltf_axis_of(gltf_up);
   for (const auto& [name, folder] : packages)
     reading.packages[file_of(name, "the name of a package")] = file_of(folder, "the folder of a package");
   {
@@ -100,13 +112,18 @@ std::shared_ptr<robot_model> from_urdf(nb::handle urdf, const std::string& model
     make(*made, sources, options);
   }
   made->maker = "from_urdf",
-  made->recipe = nb::make_tuple(file, model, spheres, geometry, copy_of(packages), exclude_links, cache);
+  made->recipe = nb::make_tuple(file, model, spheres, geometry, copy_of(packages), exclude_links, cache, gltf_up);
   return made;
 }
 
 /// A mesh from a file's name, or from (vertices, triangles).
-triangle_mesh mesh_of(const std::string& name, nb::handle given) {
-  if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__")) return io::load_mesh(text_of(given));
+triangle_mesh mesh_of(const std::string& name, nb::handle given, std::optional<io::gltf_axis> up,
+                      std::vector<std::string>& notes) {
+  if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__")) {
+    io::loaded_mesh read = io::load_mesh_noted(text_of(given), {}, up);
+    for (const std::string& note : read.notes) notes.push_back(io::sentence_about("part " + io::quoted(name), note));
+    return std::move(read.mesh);
+  }
   try {
     nb::object vertices, faces;
     if (nb::hasattr(given, "vertices") && nb::hasattr(given, "faces"))
@@ -147,15 +164,17 @@ triangle_mesh mesh_of(const std::string& name, nb::handle given) {
 }
 
 std::shared_ptr<robot_model> from_meshes(const nb::dict& meshes, const std::string& model, nb::object spheres,
-                                         const std::string& name, bool cache) {
+                                         const std::string& name, bool cache,
+                                         const std::optional<std::string>& gltf_up) {
   const model_options options = options_of(model, spheres, cache);
+  const auto up = gltf_axis_of(gltf_up);
+  const auto made = std::make_shared<robot_model>();
   std::vector<std::string> names;
   std::vector<triangle_mesh> read;
   for (const auto& [key, mesh] : meshes) {
     names.push_back(nb::cast<std::string>(key));
-    read.push_back(mesh_of(names.back(), mesh));
+    read.push_back(mesh_of(names.back(), mesh, up, made->notes));
   }
-  const auto made = std::make_shared<robot_model>();
   made->name = name;
   {
     const nb::gil_scoped_release others;
@@ -163,7 +182,7 @@ std::shared_ptr<robot_model> from_meshes(const nb::dict& meshes, const std::stri
     for (std::size_t k = 0; k < read.size(); ++k) sources.push_back({names[k], &read[k]});
     make(*made, sources, options);
   }
-  made->maker = "from_meshes", made->recipe = nb::make_tuple(copy_of(meshes), model, spheres, name, cache);
+  made->maker = "from_meshes", made->recipe = nb::make_tuple(copy_of(meshes), model, spheres, name, cache, gltf_up);
   return made;
 }
 
@@ -248,26 +267,85 @@ nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std:
   return own_array(std::move(values), shape);
 }
 
-/// A number for each of the robot's joint values, or one for all.
-std::vector<double> each_joint(const robot_model& robot, nb::handle given, const char* argument) {
+/// One of the facts that brackets have, of each part.
+nb::object facts_of(const robot_model& robot, real part_facts::* which) {
+  std::vector<double> all;
+  std::visit(
+      [&](const auto& trees) {
+        for (const part_facts& facts : trees.view().facts) all.push_back(double(facts.*which));
+      },
+      *robot.trees);
+  const std::size_t n = all.size();
+  return own_array(std::move(all), {n});
+}
+
+/// What `ask` returns; of what it refuses, `which` says where it is.
+template <class Ask>
+auto named(Ask ask, const std::string& which = {}) {
+  try {
+    return ask();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("clearance: " + which + error.what());
+  }
+}
+
+/// "a", "b" and 3 more
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(names.size(), most); ++k)
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + io::quoted(names[k]);
+  return text + (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
+}
+
+/// The robot's tree, in which joints that follow others are free where `values` names them.
+std::shared_ptr<const io::kinematic_tree> freed_tree(const robot_model& robot,
+                                                     const std::map<std::string, double>& values) {
+  const io::kinematic_tree& tree = joints_of(robot);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  names = io::followers_among(tree, names);
+  if (names.empty()) return {std::shared_ptr<void>(), &tree};
+  const std::scoped_lock lock(robot.freeing);
+  auto& kept = robot.freed[names];
+  if (!kept) kept = std::make_shared<const io::kinematic_tree>(io::freed(tree, names));
+  return kept;
+}
+
+/// A number for each of the tree's values, or one for all.
+std::vector<double> each_joint(const robot_model& robot, const io::kinematic_tree& tree, nb::handle given,
+                               const char* argument) {
   if (given.is_none()) return {};
   std::vector<double> all;
-  if (double one = 0; nb::try_cast(given, one)) return std::vector<double>(joints_of(robot).size(), one);
+  if (double one = 0; nb::try_cast(given, one)) return std::vector<double>(tree.size(), one);
+  if (tree.size() != joints_of(robot).size())
+    throw std::invalid_argument(std::string("clearance: ") + argument +
+                                " is one number for all here, because a joint that follows another has a value of "
+                                "its own, and Robot.joints does not name it");
   if (!nb::try_cast(nb::module_::import_("numpy").attr("asarray")(given).attr("tolist")(), all))
     throw std::invalid_argument(std::string("clearance: ") + argument + " is a number, or one for each of the " +
                                 std::to_string(joints_of(robot).size()) + " joints, not " + shape_and_type(given));
   return all;
 }
 
-nb::object radii_of_parts(const robot_model& robot, nb::handle joints, nb::handle errors, nb::handle speeds,
-                          double delay, bool ignore_limits) {
-  const joint_rows q = joints_given(robot, joints, ignore_limits);
-  if (!q.shape.empty())
+/// Throws std::invalid_argument if there are several.
+joint_rows one_configuration(const robot_model& robot, nb::handle joints, joint_reading how) {
+  joint_rows rows = joints_given(robot, joints, how);
+  if (!rows.shape.empty())
     throw std::invalid_argument("clearance: joints is of one configuration here, not " + shape_and_type(joints));
-  const std::vector<double> wrong = each_joint(robot, errors, "errors"), fast = each_joint(robot, speeds, "speeds");
+  return rows;
+}
+
+nb::object radii_of_parts(const robot_model& robot, nb::handle joints, nb::handle errors, nb::handle speeds,
+                          double delay, bool ignore_limits, bool rest) {
+  const joint_rows q = one_configuration(robot, joints, {ignore_limits, rest});
+  const std::vector<double> wrong = each_joint(robot, *q.tree, errors, "errors"),
+                            fast = each_joint(robot, *q.tree, speeds, "speeds");
+  std::vector<std::size_t> links;
+  for (const io::robot_part& part : robot.described().parts()) links.push_back(part.link);
   auto* const radii = new std::vector<part_radius>(std::visit(
       [&](const auto& trees) {
-        return io::part_radii(robot.described(), trees.view().facts, q.values, {wrong, fast, delay}, {ignore_limits});
+        return io::part_radii(*q.tree, links, trees.view().facts, q.values, {wrong, fast, delay}, {ignore_limits});
       },
       *robot.trees));
   return array_of(radii->data(), radii->size(),
@@ -283,15 +361,23 @@ const io::robot& robot_model::described() const {
   return *description;
 }
 
-joint_rows joints_given(const robot_model& robot, nb::handle given, bool ignore_limits) {
+joint_rows joints_given(const robot_model& robot, nb::handle given, joint_reading how) {
   const io::kinematic_tree& tree = joints_of(robot);
-  if (given.is_none()) return {tree.rest(), {}};
-  if (nb::isinstance<nb::dict>(given)) {
-    try {
-      return {tree.configuration(nb::cast<std::map<std::string, double>>(given), {ignore_limits}), {}};
-    } catch (const nb::cast_error&) {
+  joint_rows rows{{}, {}, {std::shared_ptr<void>(), &tree}};
+  if (given.is_none() || nb::isinstance<nb::dict>(given)) {
+    std::map<std::string, double> values;
+    if (!given.is_none() && !nb::try_cast(given, values))
       throw std::invalid_argument("clearance: joints, as a dictionary, has numbers by the names of joints");
-    }
+    rows.tree = freed_tree(robot, values);
+    std::vector<std::string> unsaid;
+    for (std::size_t i = 0; i < rows.tree->size(); ++i)
+      if (const std::string& name = rows.tree->movable(i).name; !values.contains(name)) unsaid.push_back(name);
+    rows.values = named([&] { return rows.tree->configuration(values, {how.ignore_limits}); });
+    if (!unsaid.empty() && !how.rest)
+      throw std::invalid_argument(std::string("clearance: ") +
+                                  (given.is_none() ? "joints are not given, of " : "joints says nothing of ") +
+                                  listed(unsaid) + "; rest=True puts such joints at rest");
+    return rows;
   }
   matrix_array array;
   if (!nb::try_cast(given, array)) {
@@ -308,7 +394,7 @@ joint_rows joints_given(const robot_model& robot, nb::handle given, bool ignore_
   if (array.ndim() == 0 || array.shape(array.ndim() - 1) != tree.size())
     throw std::invalid_argument("clearance: joints has the shape (..., " + std::to_string(tree.size()) +
                                 "), one value for each movable joint, not " + shape_and_type(given));
-  joint_rows rows{{array.data(), array.data() + array.size()}, {}};
+  rows.values.assign(array.data(), array.data() + array.size());
   for (std::size_t k = 0; k + 1 < array.ndim(); ++k) rows.shape.push_back(array.shape(k));
   return rows;
 }
@@ -348,20 +434,60 @@ Eigen::Isometry3d pose_of(nb::handle given, const char* argument) {
   return poses[0];
 }
 
-std::vector<Eigen::Isometry3d> placed_parts(const robot_model& robot, nb::handle joints, const Eigen::Isometry3d& base,
-                                            bool ignore_limits) {
-  const io::robot& described = robot.described();
-  const io::joint_options options{ignore_limits};
-  const auto [q, shape] = joints_given(robot, joints, ignore_limits);
-  const std::size_t dof = described.kinematics().size();
-  std::size_t configurations = 1;
-  for (const std::size_t n : shape) configurations *= n;
+std::size_t joint_rows::size() const {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t(1), std::multiplies<>());
+}
+
+std::vector<Eigen::Isometry3d> joint_rows::links(std::size_t configuration, const Eigen::Isometry3d& base,
+                                                 bool ignore_limits) const {
+  const std::size_t dof = tree->size();
+  std::string which;
+  for (std::size_t k = shape.size(), left = configuration; k-- > 0; left /= shape[k])
+    which = std::to_string(left % shape[k]) + (which.empty() ? "" : ", ") + which;
+  if (!which.empty()) which = "joints[" + which + "]: ";
+  auto poses = named(
+      [&] { return tree->link_poses(std::span(values).subspan(configuration * dof, dof), {ignore_limits}); }, which);
+  for (Eigen::Isometry3d& pose : poses) pose = base * pose;
+  return poses;
+}
+
+std::vector<Eigen::Isometry3d> placed_parts(const robot_model& robot, const joint_rows& joints,
+                                            const Eigen::Isometry3d& base, bool ignore_limits) {
+  const std::size_t configurations = joints.size();
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(configurations * robot.parts());
-  for (std::size_t c = 0; c < configurations; ++c)
-    for (Eigen::Isometry3d& pose : described.poses(std::span(q).subspan(c * dof, dof), options))
-      poses.push_back(base * pose);
+  for (std::size_t c = 0; c < configurations; ++c) {
+    const auto links = joints.links(c, base, ignore_limits);
+    for (const io::robot_part& part : robot.described().parts()) poses.push_back(links[part.link]);
+  }
   return poses;
+}
+
+placed_robot robot_at(const robot_model& robot, nb::handle joints, nb::handle base, joint_reading how) {
+  const Eigen::Isometry3d to = pose_of(base, "base");
+  if (robot.description || !joints.is_none()) {
+    const joint_rows rows = joints_given(robot, joints, how);
+    return {placed_parts(robot, rows, to, how.ignore_limits), rows.shape};
+  }
+  if (robot.parts() != 0 && !how.rest && !(robot.parts() == 1 && !base.is_none()))
+    throw std::invalid_argument("clearance: poses are not given, and nothing else says where part " +
+                                io::quoted((*robot.names)[0]) + (robot.parts() > 1 ? " and the others are" : " is") +
+                                ", because this robot was not read from a URDF file; rest=True puts all parts where "
+                                "the base is");
+  return {std::vector(robot.parts(), to), {}};
+}
+
+io::digest digest_of(std::span<const Eigen::Isometry3d> poses) {
+  static_assert(sizeof(Eigen::Isometry3d) == 16 * sizeof(double));
+  return io::digest_of(std::string_view(reinterpret_cast<const char*>(poses.data()), poses.size_bytes()));
+}
+
+std::vector<std::size_t> own_columns(const robot_model& robot, const io::kinematic_tree& from) {
+  std::vector<std::size_t> columns;
+  const io::kinematic_tree& own = joints_of(robot);
+  for (std::size_t i = 0; i < from.size() && columns.size() < own.size(); ++i)  // both have the order of the joints
+    if (from.movable(i).name == own.movable(columns.size()).name) columns.push_back(i);
+  return columns;
 }
 
 void bind_robot(nb::module_& m) {
@@ -373,14 +499,18 @@ void bind_robot(nb::module_& m) {
           "from_urdf", &from_urdf, nb::arg("file"), nb::arg("model") = "spheres",
           nb::arg("spheres").none() = nb::none(), nb::arg("geometry") = "collision", nb::arg("packages") = nb::dict(),
           nb::arg("exclude_links") = std::vector<std::string>(), nb::arg("cache") = true,
+          nb::arg("gltf_up").none() = nb::none(),
           "Reads a URDF file and its meshes. model: \"spheres\" (packed into each link, `spheres` of them; kept "
-          "in the cache) or \"triangles\" (exact). packages: the folder of package://name. Raises RuntimeError "
+          "in the cache) or \"triangles\" (exact). packages: the folder of package://name. gltf_up: \"y\" or \"z\", "
+          "which "
+          "axis of glTF meshes is up; None: as a link's other geometry shows, else y, with a note. Raises RuntimeError "
           "if a file is damaged or missing, ValueError if an option cannot be.")
       .def_static(
           "from_meshes", &from_meshes, nb::arg("meshes"), nb::arg("model") = "spheres",
           nb::arg("spheres").none() = nb::none(), nb::arg("name") = "robot", nb::arg("cache") = true,
+          nb::arg("gltf_up").none() = nb::none(),
           "One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with "
-          "vertices and faces. Metres.")
+          "vertices and faces. Metres. gltf_up: as of from_urdf.")
       .def_static("from_spheres", &from_spheres, nb::arg("spheres"), nb::arg("gap") = 0.0, nb::arg("tolerance") = 0.0,
                   nb::arg("name") = "robot",
                   "One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the "
@@ -410,6 +540,36 @@ void bind_robot(nb::module_& m) {
           },
           "The names of the movable joints, in the order of joint values.")
       .def_prop_ro(
+          "mimics",
+          [](const robot_model& r) {
+            nb::dict all;
+            if (r.description)
+              for (const io::joint& j : joints_of(r).joints())
+                if (j.follows)
+                  all[j.name.c_str()] = nb::make_tuple(j.follows->joint, j.follows->multiplier, j.follows->offset);
+            return all;
+          },
+          nb::sig("def mimics(self) -> dict[str, tuple[str, float, float]]"),
+          "The joints that follow others, {name: (other, multiplier, offset)}. A value that joints, as a dictionary, "
+          "gives one of them wins, as with ROS's robot_state_publisher.")
+      .def_prop_ro(
+          "insides",
+          [](const robot_model& r) {
+            nb::list all;
+            for (const io::body& b : r.bodies)
+              all.append(b.closed.loaded == 0 ? nb::none() : nb::object(nb::str(to_string(b.closed.inside))));
+            return all;
+          },
+          nb::sig("def insides(self) -> list[str | None]"),
+          "How each part's inside is known: \"closed\", \"caps\", \"flood\" or \"nothing\"; None: there is no mesh.")
+      .def_prop_ro(
+          "tolerances", [](const robot_model& r) { return facts_of(r, &part_facts::tolerance); },
+          "By how much each part's solid may differ from the true surface, either way, (parts,): metres. Brackets are "
+          "wider by it.")
+      .def_prop_ro(
+          "gaps", [](const robot_model& r) { return facts_of(r, &part_facts::gap); },
+          "How far each part's solid may be from its spheres or triangles, (parts,): metres; inf: unknown.")
+      .def_prop_ro(
           "limits",
           [](const robot_model& r) {
             std::vector<double> ranges;
@@ -429,26 +589,32 @@ void bind_robot(nb::module_& m) {
           "Each joint at 0, or at the limit nearest to it.")
       .def(
           "poses",
-          [](const robot_model& r, nb::handle joints, nb::handle base, bool ignore_limits) {
-            std::vector<std::size_t> shape = joints_given(r, joints, ignore_limits).shape;
+          [](const robot_model& r, nb::handle joints, nb::handle base, bool ignore_limits, bool rest) {
+            auto [poses, shape] = robot_at(r, joints, base, {ignore_limits, rest});
             shape.push_back(r.parts());
-            return rows_of(placed_parts(r, joints, pose_of(base, "base"), ignore_limits), shape);
+            return rows_of(poses, shape);
           },
           nb::arg("joints").none() = nb::none(), nb::arg("base").none() = nb::none(), nb::arg("ignore_limits") = false,
-          "World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}. base is "
-          "world-from-base. Raises ValueError for values beyond the limits.")
+          nb::arg("rest") = false,
+          "World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}, where a joint "
+          "of `mimics` may have a value of its own, too. base is world-from-base. Raises ValueError for values beyond "
+          "the limits, and for joints that nothing is said of, unless rest: then they are at rest.")
       .def(
           "link_pose",
-          [](const robot_model& r, const std::string& link, nb::handle joints, nb::handle base) {
-            const auto q = joints_given(r, joints, false).values;
-            return rows_of({pose_of(base, "base") * r.described().link_pose(link, q)}, {});
+          [](const robot_model& r, const std::string& link, nb::handle joints, nb::handle base, bool ignore_limits,
+             bool rest) {
+            const std::size_t number = named([&] { return joints_of(r).link(link); });
+            const joint_rows q = one_configuration(r, joints, {ignore_limits, rest});
+            return rows_of({q.links(0, pose_of(base, "base"), ignore_limits)[number]}, {});
           },
           nb::arg("link"), nb::arg("joints").none() = nb::none(), nb::arg("base").none() = nb::none(),
-          "World-from-link of any link, (4, 4): with geometry or without, such as a camera's.")
+          nb::arg("ignore_limits") = false, nb::arg("rest") = false,
+          "World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.")
       .def(
           "jacobian",
-          [](const robot_model& r, nb::handle joints, nb::handle part, nb::handle point, nb::handle base) {
-            const auto q = joints_given(r, joints, false).values;
+          [](const robot_model& r, nb::handle joints, nb::handle part, nb::handle point, nb::handle base,
+             bool ignore_limits, bool rest) {
+            const joint_rows q = one_configuration(r, joints, {ignore_limits, rest});
             const auto at = three_of(point, "at");
             std::size_t k = 0;
             if (nb::isinstance<nb::str>(part)) {
@@ -459,35 +625,36 @@ void bind_robot(nb::module_& m) {
               throw std::invalid_argument("clearance: the robot has " + std::to_string(r.parts()) +
                                           " parts, and none of number " + std::to_string(k));
             }
-            auto links = joints_of(r).link_poses(q);
-            const Eigen::Isometry3d to = pose_of(base, "base");
-            for (auto& pose : links) pose = to * pose;
-            const auto moved = io::jacobian(joints_of(r), links, r.described().parts()[k].link, {at[0], at[1], at[2]});
-            std::vector<double> rows(std::size_t(moved.size()));
+            const auto links = q.links(0, pose_of(base, "base"), ignore_limits);
+            const auto moved = io::jacobian(*q.tree, links, r.described().parts()[k].link, {at[0], at[1], at[2]});
+            const std::vector<std::size_t> columns = own_columns(r, *q.tree);
+            std::vector<double> rows;
             for (Eigen::Index i = 0; i < moved.rows(); ++i)
-              for (Eigen::Index j = 0; j < moved.cols(); ++j) rows[std::size_t(i * moved.cols() + j)] = moved(i, j);
-            return own_array(std::move(rows), {6, std::size_t(moved.cols())});
+              for (const std::size_t j : columns) rows.push_back(moved(i, Eigen::Index(j)));
+            return own_array(std::move(rows), {6, columns.size()});
           },
           nb::arg("joints").none(), nb::arg("part").none(), nb::arg("at").none(), nb::arg("base").none() = nb::none(),
+          nb::arg("ignore_limits") = false, nb::arg("rest") = false,
           "What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its "
           "angular velocity, per radian or metre.")
       .def("part_radii", &radii_of_parts, nb::arg("joints").none(), nb::arg("errors").none() = nb::none(),
            nb::arg("speeds").none() = nb::none(), nb::arg("delay") = 0.0, nb::arg("ignore_limits") = false,
+           nb::arg("rest") = false,
            "How far each part may be from where joints have it, for CertainDistance(parts=...): records of joints and "
            "delay, metres. errors (rad, m): by how much joints may be wrong; speeds, per second, in the seconds of "
            "delay; one number, or one a joint. Raises ValueError for what is negative or not finite.")
       .def(
           "spheres",
-          [](const robot_model& r, std::size_t k) {
+          [](const robot_model& r, given_for<std::size_t> k) {
             const auto& all = body_of(r, k).packed.spheres;
             std::vector<float> rows;
             for (const inner_sphere& s : all) rows.insert(rows.end(), {s.center.x, s.center.y, s.center.z, s.radius});
             return own_array(std::move(rows), {all.size(), 4});
           },
-          nb::arg("part"), "The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.")
+          nb::arg("part").none(), "The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.")
       .def(
           "mesh",
-          [](const robot_model& r, std::size_t k) {
+          [](const robot_model& r, given_for<std::size_t> k) {
             const auto& mesh = body_of(r, k).closed.surface;
             std::vector<double> vertices;
             std::vector<std::uint32_t> triangles;
@@ -496,7 +663,8 @@ void bind_robot(nb::module_& m) {
             return nb::make_tuple(own_array(std::move(vertices), {mesh.vertices.size(), 3}),
                                   own_array(std::move(triangles), {mesh.triangles.size(), 3}));
           },
-          nb::arg("part"), "The closed mesh of a part: vertices (n, 3) in its frame, metres, and triangles (m, 3).")
+          nb::arg("part").none(),
+          "The closed mesh of a part: vertices (n, 3) in its frame, metres, and triangles (m, 3).")
       .def("__reduce__",
            [](const robot_model& r) {
              const nb::object all = nb::make_tuple(r.maker) + r.recipe;

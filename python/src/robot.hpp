@@ -4,6 +4,7 @@
 
 #include "asker.hpp"
 
+#include <clearance/io/digest.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/io/robot_bodies.hpp>
 
@@ -33,6 +34,9 @@ struct robot_model {
   std::mutex devices;
   std::map<int, std::shared_ptr<void>> on_device;  ///< Its trees on each device that was asked.
 
+  mutable std::mutex freeing;
+  mutable std::map<std::vector<std::string>, std::shared_ptr<const clearance::io::kinematic_tree>> freed;
+
   std::size_t parts() const { return names->size(); }
   /// Throws std::invalid_argument for a robot without joints.
   const clearance::io::robot& described() const;
@@ -42,16 +46,43 @@ struct robot_model {
 Eigen::Isometry3d pose_of(nb::handle given, const char* argument);
 std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument);
 
-/// Joint values, one configuration after another, and the shape before the last axis.
+/// How joint values are read.
+struct joint_reading {
+  bool ignore_limits = false;
+  bool rest = false;  ///< Joints that nothing is said of are at rest; otherwise they are refused.
+};
+
+/// Joint values, one configuration after another, and the shape before the last axis. They are values of `tree`: the
+/// robot's own, or, where joints that follow others were given values of their own, one in which they are free.
 struct joint_rows {
   std::vector<double> values;
   std::vector<std::size_t> shape;
-};
-/// From an array of shape (..., joints), from {name: value}, or, of None, the joints at rest.
-joint_rows joints_given(const robot_model& robot, nb::handle given, bool ignore_limits);
+  std::shared_ptr<const clearance::io::kinematic_tree> tree;
 
-/// The poses of all parts for joint values of shape (..., joints), or for {name: value}.
-std::vector<Eigen::Isometry3d> placed_parts(const robot_model& robot, nb::handle joints, const Eigen::Isometry3d& base,
-                                            bool ignore_limits);
+  std::size_t size() const;  ///< How many configurations.
+  /// The poses of all links in one configuration, with the base at `base`. Throws std::invalid_argument, which says of
+  /// several which one it is.
+  std::vector<Eigen::Isometry3d> links(std::size_t configuration, const Eigen::Isometry3d& base,
+                                       bool ignore_limits) const;
+};
+/// From an array of shape (..., joints), from {name: value}, or from None.
+joint_rows joints_given(const robot_model& robot, nb::handle given, joint_reading how);
+
+/// The poses of all parts in all configurations.
+std::vector<Eigen::Isometry3d> placed_parts(const robot_model& robot, const joint_rows& joints,
+                                            const Eigen::Isometry3d& base, bool ignore_limits);
+
+/// Where all parts are: by joints, or, of a robot without them, all at the base, if that is what is meant.
+struct placed_robot {
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<std::size_t> shape;  ///< Of the configurations.
+};
+placed_robot robot_at(const robot_model& robot, nb::handle joints, nb::handle base, joint_reading how);
+
+/// A fingerprint of poses, to the bit.
+clearance::io::digest digest_of(std::span<const Eigen::Isometry3d> poses);
+
+/// Columns that stand for `from`'s values, as columns of the robot's own: those of joints that were freed are left out.
+std::vector<std::size_t> own_columns(const robot_model& robot, const clearance::io::kinematic_tree& from);
 
 void bind_robot(nb::module_& m);

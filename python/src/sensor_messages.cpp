@@ -4,10 +4,12 @@
 
 #include "arrays.hpp"
 
+#include <clearance/io/compressed_depth.hpp>
 #include <clearance/points/camera.hpp>
 #include <clearance/points/point_cloud2.hpp>
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -95,6 +97,19 @@ nb::tuple layout_of(nb::handle message, nb::ndarray<const std::uint8_t, nb::ndim
   return in_double ? layout(double{}) : layout(float{});
 }
 
+/// The image of a CompressedImage, (rows, columns), and by how much less each depth may be, or None.
+nb::tuple compressed_depth_of(const std::string& format,
+                              nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig> data) {
+  io::compressed_depth made;
+  {
+    const nb::gil_scoped_release others_run;
+    made = io::read_compressed_depth(format, {reinterpret_cast<const char*>(data.data()), data.size()}, "the message");
+  }
+  const std::vector<std::size_t> shape{made.frame.height, made.frame.width};
+  if (made.metres.empty()) return nb::make_tuple(own_array(std::move(made.frame.pixels), shape), nb::none());
+  return nb::make_tuple(own_array(std::move(made.metres), shape), own_array(std::move(made.short_by), shape));
+}
+
 }  // namespace
 
 void bind_sensor_messages(nb::module_& m) {
@@ -126,4 +141,7 @@ void bind_sensor_messages(nb::module_& m) {
            "x / z and y / z of each pixel, (height, width, 2), float32: about a microsecond each. NaN where the lens "
            "folds or sees too wide, so the points of such pixels are dropped as not_finite. ValueError if all are.");
   m.def("_cloud_layout", &layout_of, nb::arg("message"), nb::arg("data"));
+  m.def("_compressed_depth", &compressed_depth_of, nb::arg("format"), nb::arg("data"));
+  m.def("_is_depth", [](const std::string& format) { return io::depth_format(format).has_value(); }, nb::arg("format"));
+  m.def("_row_step", &row_step, nb::arg("rows"), nb::arg("row_bytes"), nb::arg("said"), nb::arg("held"));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "values.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 nb::object dtype_of_members(const nb::list& names, const nb::list& formats, const nb::list& offsets, std::size_t size) {
@@ -34,8 +35,8 @@ std::string sentence_of(const clearance::min_distance_result& r, const part_name
   char metres[96];
   std::string text = clearance::to_string(r.state);
   if (r.state == clearance::state::no_data) return text + ": none of " + grouped(r.seen) + " points is valid";
-  std::snprintf(metres, sizeof metres, ": %.3f m (certainly %.3f to %.3f)", double(r.distance), double(r.lower),
-                double(r.upper));
+  const double distance = std::abs(r.distance) < 0.0005f ? 0 : double(r.distance);  // not -0.000
+  std::snprintf(metres, sizeof metres, ": %.3f m (certainly %.3f to %.3f)", distance, double(r.lower), double(r.upper));
   text += metres;
   if (r.part == clearance::none) return text;
   text += ", " + (names && r.part < names->size() ? (*names)[r.part] : "part " + std::to_string(r.part));

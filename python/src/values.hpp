@@ -2,26 +2,36 @@
 #pragma once
 // C++ values in Python: numbers, enumerations, arrays that view a result's memory, and results with their members.
 
+#include "arrays.hpp"
 #include "declared.hpp"
 
+#include <clearance/io/digest.hpp>
 #include <clearance/point_source.hpp>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <span>
 
 namespace nb = nanobind;
 
-/// A result in Python: the library's, and the names of the robot's parts, for what is printed.
 using part_names = std::shared_ptr<const std::vector<std::string>>;
+
+/// What an answer is about: the robot, by the names of its parts, which are for what is printed, too; and where it was.
+struct asked_about {
+  part_names names;
+  clearance::io::digest poses;
+};
+
+/// A result in Python.
 template <class R>
 struct answered {
   R value;
-  part_names names;
+  asked_about about;
 };
 
 template <class T>
@@ -91,7 +101,7 @@ nb::object three(const V& v) {
 
 /// `owner` is the Python object that holds `value`; `name` its member's.
 template <class T>
-nb::object to_python(const T& value, nb::handle owner, const part_names& names) {
+nb::object to_python(const T& value, nb::handle owner, const asked_about& about) {
   if constexpr (std::is_same_v<T, clearance::vec3> || std::is_same_v<T, clearance::position>) {
     return three(value);
   } else if constexpr (std::is_same_v<T, std::uint32_t>) {
@@ -105,7 +115,7 @@ nb::object to_python(const T& value, nb::handle owner, const part_names& names) 
   } else if constexpr (is_array<T>) {
     return array_of(value.data(), value.size(), owner);
   } else if constexpr (declared_struct<T>) {
-    return nb::cast(answered<T>{value, names});
+    return nb::cast(answered<T>{value, about});
   } else {
     return nb::cast(value);
   }
@@ -122,18 +132,49 @@ void for_each_member(F f) {
 /// "free: 0.164 m (certainly 0.160 to 0.164), hand to point 84,612"
 std::string sentence_of(const clearance::min_distance_result& r, const part_names& names);
 
+/// What Python gives for an argument of a method, whatever it is, so that the refusal is a sentence.
+template <class T>
+struct given_for {
+  nb::handle it;
+};
+/// Throws IndexError for a number that is none of anything, TypeError for what is no number.
+template <class T>
+T argument_of(given_for<T> given, const char* name) {
+  if constexpr (std::is_integral_v<T>)
+    return index_of(given.it, name);
+  else
+    return number_of(given.it, name);
+}
+template <class T>
+struct nb::detail::type_caster<given_for<T>> {
+  NB_TYPE_CASTER(given_for<T>, const_name<std::is_integral_v<T>>("int", "float"))
+  bool from_python(handle given, std::uint32_t, cleanup_list*) noexcept {
+    value.it = given;
+    return true;
+  }
+};
+
+/// A method of a result, for Python.
+template <class R, class Call, class... A>
+struct method_of {
+  Call call;
+  std::array<const char*, sizeof...(A)> names;
+
+  nb::object operator()(nb::handle_t<answered<R>> self, given_for<A>... given) const {
+    const auto& its = nb::cast<const answered<R>&>(self);
+    std::size_t k = 0;
+    const std::tuple<A...> all{argument_of(given, names[k++])...};
+    return to_python(std::apply([&](const A&... a) -> decltype(auto) { return call(its.value, a...); }, all), self,
+                     its.about);
+  }
+};
 template <class R, class Call, class... Names>
 void bind_method(nb::class_<answered<R>>& bound, const method_as<Call, Names...>& method) {
   const auto bind = [&]<class... A>(auto (Call::*)(const R&, A...) const) {
     std::apply(
         [&](const auto... names) {
-          bound.def(
-              method.name,
-              [call = method.call](nb::handle_t<answered<R>> self, A... a) {
-                const auto& its = nb::cast<const answered<R>&>(self);
-                return to_python(call(its.value, a...), self, its.names);
-              },
-              nb::arg(names)..., method.doc);
+          bound.def(method.name, method_of<R, Call, A...>{method.call, {names...}}, nb::arg(names).none()...,
+                    method.doc);
         },
         method.arguments);
   };
@@ -151,7 +192,7 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
         member.name,
         [at = member.at](nb::handle_t<answered<R>> self) {
           const auto& its = nb::cast<const answered<R>&>(self);
-          return to_python(its.value.*at, self, its.names);
+          return to_python(its.value.*at, self, its.about);
         },
         member.doc);
   });
@@ -163,12 +204,12 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
         "link",
         [](const answered<R>& self) -> nb::object {
           const auto part = self.value.part;
-          if (!self.names || part >= self.names->size()) return nb::none();
-          return nb::cast((*self.names)[part]);
+          if (!self.about.names || part >= self.about.names->size()) return nb::none();
+          return nb::cast((*self.about.names)[part]);
         },
         "The name of that part, or None.");
   if constexpr (std::is_same_v<R, clearance::min_distance_result>)
-    bound.def("__str__", [](const answered<R>& self) { return sentence_of(self.value, self.names); });
+    bound.def("__str__", [](const answered<R>& self) { return sentence_of(self.value, self.about.names); });
   bound.def("__repr__", [](nb::handle self) { return repr_of(self, declared<R>::name, members); });
   return bound;
 }

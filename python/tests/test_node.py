@@ -17,7 +17,7 @@ from clearance import playing, recordings
 
 pytest.importorskip("rosbags", reason="rosbags is not installed (extra ros)")
 pytest.importorskip("cyclonedds", reason="cyclonedds is not installed (extra node)")
-from test_playing import URDF, bag, drive  # noqa: E402
+from test_playing import URDF, bag, compressed_drive, drive  # noqa: E402
 from test_recordings import MS, START, cloud_message, joint_message, tf_message, transform  # noqa: E402
 
 from clearance import node as nodes  # noqa: E402
@@ -49,7 +49,7 @@ def urdf(tmp_path_factory):
 class Bench:
     """A node in a process of its own, and what is said to it and heard from it."""
 
-    def __init__(self, wire, urdf, name, *arguments, clouds=("/lidar/points",), images=()):
+    def __init__(self, wire, urdf, name, *arguments, clouds=("/lidar/points",), images=(), compressed=()):
         self.wire, self.name = wire, name
         self.command = [
             sys.executable,
@@ -73,10 +73,12 @@ class Bench:
             "--report",
             *(each for topic in clouds for each in ("--cloud", f"/{name}{topic}")),
             *(each for topic in images for each in ("--image", f"/{name}{topic}")),
+            *(each for topic in compressed for each in ("--compressed-image", f"/{name}{topic}")),
             *map(str, arguments),
         ]
         kinds = {"/joint_states": recordings.JOINTS, "/tf": recordings.TRANSFORMS, "/tf_static": recordings.TRANSFORMS}
         kinds.update(dict.fromkeys(clouds, recordings.CLOUD) | dict.fromkeys(images, recordings.IMAGE))
+        kinds.update(dict.fromkeys(compressed, recordings.COMPRESSED))
         kinds.update({topic.rsplit("/", 1)[0] + "/camera_info": recordings.CAMERA for topic in images})
         self.writers = {
             topic: wire.writer(name + topic, kind, "latched" if topic == "/tf_static" else "sensor", 100)
@@ -265,13 +267,16 @@ for each in sorted((package / "msg").glob("*.msg")):
 
 def test_the_node_says_what_play_says(bench, urdf, tmp_path):
     images = ("/depth/image_raw", "/far/image")
-    messages = sorted((each for each in drive(12) if not each[0].startswith("/colour")), key=lambda each: each[1])
+    compressed = tuple(f"{topic}/compressedDepth" for topic in images)
+    packed = [each for each in compressed_drive(12) if each[0] in compressed]
+    messages = [each for each in drive(12) if not each[0].startswith("/colour")] + packed
+    messages.sort(key=lambda each: each[1])
     rows = list(
         playing.play(
             bag(tmp_path / "bag", messages), {"file": str(urdf), "spheres": 64}, question=clearance.MinDistancePerPart()
         )
     )
-    node = bench("--wait", 2, "--timeout", 5, images=images)
+    node = bench("--wait", 2, "--timeout", 5, images=images, compressed=compressed)
     for topic, _, message in messages:
         node.say(topic, message)
         time.sleep(0.003)
@@ -284,9 +289,9 @@ def test_the_node_says_what_play_says(bench, urdf, tmp_path):
         (each.topic.removeprefix(f"/{node.name}"), recordings.nanoseconds(each.header.stamp)): each
         for each in node.hear()
     }
-    assert len(heard) == len(rows) == 36
+    assert len(heard) == len(rows) == 60
     for row in rows:
-        said = heard[row.topic, round((row.stamp - START / 1e9) * 1000) * MS + START]
+        said = heard[row.topic, row.stamp_ns]
         assert (state(said), said.link, said.point, said.seen, said.valid) == (
             row.state,
             row.link,
@@ -306,9 +311,9 @@ def test_the_node_says_what_play_says(bench, urdf, tmp_path):
     ranges = node.heard[nodes.RANGE]
     assert sorted(each.range for each in ranges) == pytest.approx(sorted(row.lower for row in rows), abs=1e-6)
     lines = [each.markers[0] for each in node.heard[nodes.MARKERS]]
-    assert len(lines) == 36 and all(len(each.points) == 2 and each.type == 5 and each.action == 0 for each in lines)
+    assert len(lines) == 60 and all(len(each.points) == 2 and each.type == 5 and each.action == 0 for each in lines)
     out = node.stop()
-    assert "36 frames" in out and "0 frames came late, 0 were overtaken" in out
+    assert "60 frames" in out and "0 frames came late, 0 were overtaken" in out
 
 
 def test_the_stop_follows_the_margin(bench):

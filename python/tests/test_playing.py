@@ -5,6 +5,8 @@ import csv
 import json
 import math
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -20,9 +22,11 @@ from test_recordings import (  # noqa: E402
     START,
     about_z,
     cloud_message,
+    compressed_message,
     image_message,
     info_message,
     joint_message,
+    make,
     tf_message,
     transform,
     write_bag,
@@ -332,8 +336,15 @@ def test_the_root_is_not_a_link_that_only_starts_there(tmp_path):
     assert row.distance == pytest.approx(result.distance, abs=1e-6) and row.distance > 0.5
 
 
-def test_a_wheel_turns_the_shorter_way(robot):
+def test_a_wheel_turns_the_shorter_way(robot, tmp_path):
     assert playing.Watch(robot).turns == {"spin"}
+    file = tmp_path / "wheels.urdf"
+    wheel = URDF.replace('"wheel"', '"other"').split('<link name="other">')[1].split("</link>")[0]
+    joint = """<joint name="{0}" type="continuous"><parent link="base"/><child link="{0}"/><mimic joint="{1}"/></joint>"""
+    links = "".join(f'<link name="{name}">{wheel}</link>' for name in ("second", "third"))
+    file.write_text(URDF.replace("</robot>", links + joint.format("third", "second") + joint.format("second", "spin"))
+                    + "</robot>")  # fmt: skip
+    assert playing.Watch(str(file)).turns == {"spin", "second", "third"}
 
 
 def test_parts_without_a_urdf_are_placed_by_transforms(tmp_path):
@@ -407,7 +418,284 @@ def test_play_does_not_read_ahead(robot, tmp_path):
     assert 200 < seen < 600
 
 
+def test_stamps_keep_their_nanoseconds(robot, tmp_path):
+    odd = START + 7 * MS + 123
+    messages = [each for each in drive(1) if each[0] in ("/tf_static", "/tf", "/joint_states")]
+    messages += [("/lidar/points", odd, cloud_message(odd + k, "lidar", scene(odd))) for k in range(3)]
+    folder = bag(tmp_path / "bag", messages)
+    rows = list(playing.play(folder, robot))
+    assert [row.stamp_ns for row in rows] == [odd, odd + 1, odd + 2] and len({row.stamp for row in rows}) == 1
+    only = list(playing.play(folder, robot, only={(odd + 1, "/lidar/points")}))
+    assert [row.note for row in only] == ["not asked", "", "not asked"]
+    with playing.Csv(tmp_path / "a.csv") as table:
+        for row in rows:
+            table.write(row)
+    with open(tmp_path / "a.csv", newline="") as file:
+        assert [int(line["stamp_ns"]) for line in csv.DictReader(file)] == [odd, odd + 1, odd + 2]
+
+
+def compressed_drive(frames=6):
+    """The drive, whose images were also compressed."""
+    messages = drive(frames)
+    more = []
+    for topic, log_time, message in messages:
+        if topic in ("/depth/image_raw", "/far/image"):
+            stamp = recordings.nanoseconds(message.header.stamp)
+            image = depth_scene(stamp, "u2" if topic.startswith("/depth") else "f4")
+            for by in ("png", "rvl"):
+                packed = compressed_message(stamp, "camera", image, by=by, farthest=5.0)
+                where = topic if by == "png" else f"{topic}/rvl"
+                more.append((f"{where}/compressedDepth", log_time, packed))
+    return [each for each in messages if "points" not in each[0]] + more
+
+
+def test_compressed_depth_is_played_as_the_image_that_was_packed(urdf, tmp_path):
+    robot = clearance.Robot.from_urdf(str(urdf), model="triangles")  # exact, so that the bracket is about the image
+    info = {
+        f"{topic}/rvl/compressedDepth": f"/{topic.split('/')[1]}/camera_info" for topic in ("/depth/image_raw", "/far/image")
+    }
+    played = playing.play(bag(tmp_path / "bag", compressed_drive()), robot, camera_info=info)
+    rows = list(played)
+    assert len(rows) == 36 and played.notes == ["no depth, so not played: /colour/image_raw (rgb8)"]
+    of = {(row.topic, row.stamp_ns): row for row in rows}
+    quantised = 0
+    for row in rows:
+        assert row.state != "unknown", row.note
+        if "compressed" not in row.topic:
+            continue
+        whole = of[row.topic.replace("/rvl", "").removesuffix("/compressedDepth"), row.stamp_ns]
+        if row.topic.startswith("/depth"):
+            assert (row.distance, row.lower, row.upper, row.point) == (whole.distance, whole.lower, whole.upper, whole.point)
+            continue
+        # Inverse depths were rounded: the bracket holds what was measured, and is no wider than it must be.
+        assert row.lower <= whole.distance <= row.upper and row.upper - row.lower < 5e-4
+        assert row.seen == whole.seen and row.valid == whole.valid
+        quantised += row.distance != whole.distance
+    assert quantised > 8
+
+
+def test_what_quantised_depth_hides_is_not_free(tmp_path):
+    """A surface 0.1 mm before the robot, seen from 3 m away: coarse inverse depths put it 0.4 m farther."""
+    ball = clearance.Robot.from_spheres({"ball": np.array([[0, 0, 4.0, 0.5]])})
+    image = np.full((9, 9), 3.4999, "f4")
+    lens = info_message(START, "camera", (9, 9), (60.0, 60, 4, 4))
+    frames = {"/raw/image": image_message(START, "camera", image)}
+    for step in (1.0, 100.0):
+        frames[f"/{step:g}/image/compressedDepth"] = compressed_message(START, "camera", image, step=step, farthest=20.0)
+    messages = [("/tf_static", START, tf_message(transform(0, "camera", "ball")))]
+    messages += [(topic, START, message) for topic, message in frames.items()]
+    messages += [(f"/{topic.split('/')[1]}/camera_info", START, lens) for topic in frames]
+    for question in (clearance.MinDistance(), clearance.MinDistancePerPart(), clearance.MinDistanceSupported(3, 0.5, 50)):
+        rows = {row.topic: row for row in playing.play(bag(tmp_path / type(question).__name__, messages), ball,
+                                                       question=question)}  # fmt: skip
+        assert rows["/raw/image"].state == "free"
+        coarse = rows["/1/image/compressedDepth"]
+        assert coarse.state == "possible" and coarse.lower == 0 and coarse.upper >= rows["/raw/image"].upper
+        for row in rows.values():
+            assert row.lower <= rows["/raw/image"].distance <= row.upper
+
+
+def test_a_limit_of_depth_comes_after_what_its_rounding_may_hide(tmp_path):
+    """A surface within `farthest` that coarse depths put just beyond it is not dropped from what is certain."""
+    ball = clearance.Robot.from_spheres({"ball": np.array([[0, 0, 2.5, 0.4]])})
+    image = np.full((9, 9), 2.0, "f4")
+    image[0, 0] = 1.0  # so that something is within in any case
+    lens = info_message(START, "camera", (9, 9), (60.0, 60, 4, 4))
+    messages = [("/tf_static", START, tf_message(transform(0, "camera", "ball")))]
+    for step in (1.0, 3.0, 10.0, 100.0):
+        packed = compressed_message(START, "camera", image, step=step, farthest=20.0)
+        messages += [(f"/{step:g}/image/compressedDepth", START, packed), (f"/{step:g}/camera_info", START, lens)]
+    decoded = {}
+    for row in playing.play(bag(tmp_path / "bag", messages), ball, farthest=2.001):
+        found, off = recordings.compressed_depth(dict((t, m) for t, _, m in messages)[row.topic])
+        decoded[row.topic] = found[4, 4] > 2.001
+        assert row.lower <= 0.1 <= row.upper + decoded[row.topic] and row.lower >= 0.1 - 2.2 * off[4, 4]
+    assert set(decoded.values()) == {True, False}
+
+
+def test_sensors_that_are_not_read_are_named(robot, tmp_path):
+    scan = make("sensor_msgs/msg/LaserScan", header=make("std_msgs/msg/Header", stamp=make(
+        "builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id="lidar"), angle_min=0.0, angle_max=1.0,
+        angle_increment=0.1, time_increment=0.0, scan_time=0.0, range_min=0.0, range_max=9.0, ranges=np.ones(3, "f4"),
+        intensities=np.zeros(0, "f4"))  # fmt: skip
+    jpeg = make("sensor_msgs/msg/CompressedImage", header=scan.header, format="bgr8; jpeg compressed bgr8",
+                data=np.zeros(3, np.uint8))  # fmt: skip
+    messages = [*drive(2), ("/scan", START, scan), ("/colour/image_raw/compressed", START, jpeg)]
+    folder = bag(tmp_path / "bag", messages)
+    played = playing.play(folder, robot)
+    assert len(list(played)) == 6
+    assert played.notes == [
+        "not read: /scan (sensor_msgs/msg/LaserScan)",
+        "no depth, so not played: /colour/image_raw (rgb8), /colour/image_raw/compressed (bgr8; jpeg compressed bgr8)",
+    ]
+    assert playing.rows(folder, robot).notes == played.notes
+    named = playing.play(folder, robot, topics=["/lidar/points"])  # who names topics knows of the others
+    assert len(list(named)) == 2 and named.notes == []
+    only = [each for each in messages if each[0] in ("/scan", "/tf_static")]
+    with pytest.raises(ValueError, match=r"there is no PointCloud2 and no depth Image to play; .*/scan \("):
+        playing.play(bag(tmp_path / "scan", only), robot)
+    only = [each for each in messages if each[0] in ("/colour/image_raw/compressed", "/tf_static")]
+    with pytest.raises(ValueError, match="only /colour/image_raw/compressed .bgr8; jpeg"):
+        list(playing.play(bag(tmp_path / "jpeg", only), robot))
+
+
+GRIPPER = """<robot name="gripper"><link name="hand"/>
+  <link name="left"><collision><geometry><box size="0.1 0.02 0.1"/></geometry></collision></link>
+  <link name="right"><collision><geometry><box size="0.1 0.02 0.1"/></geometry></collision></link>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="left"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.05" effort="1" velocity="1"/></joint>
+  <joint name="grip2" type="prismatic"><parent link="hand"/><child link="right"/><axis xyz="0 -1 0"/>
+    <limit lower="0" upper="0.05" effort="1" velocity="1"/><mimic joint="grip"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("published", "joints", "distance", "note"),
+    [
+        ({"grip": 0.01}, {}, 0.08, ""),
+        ({"grip": 0.01, "grip2": 0.01}, {}, 0.08, ""),
+        ({"grip": 0.01, "grip2": 0.0104}, {}, 0.0796, ""),
+        ({"grip": 0.01, "grip2": 0.04}, {}, 0.05, "grip2 is at 0.04 as published, not at 0.01 as <mimic> says"),
+        ({"grip": 0.01, "grip2": 0.06}, {}, 0.03, "grip2 is at 0.06 as published"),  # an encoder beyond its limit
+        ({"grip": 0.01}, {"grip2": 0.04}, 0.05, "grip2 is at 0.04 as given, not at 0.01 as <mimic> says"),
+        ({"grip": 0.01, "grip2": 0.02}, {"grip2": 0.04}, 0.05, "grip2 is at 0.04 as given"),
+    ],
+)
+def test_a_published_value_of_a_mimic_joint_wins(tmp_path, published, joints, distance, note):
+    (tmp_path / "gripper.urdf").write_text(GRIPPER)
+    messages = [("/joint_states", START + k * 10 * MS, joint_message(START + k * 10 * MS, published)) for k in range(5)]
+    messages.append(("/tf_static", START, tf_message(transform(0, "hand", "camera"))))
+    messages.append(("/points", START + 15 * MS, cloud_message(START + 15 * MS, "camera", [[0, -0.1, 0]])))
+    robot = {"file": tmp_path / "gripper.urdf", "model": "triangles"}
+    row = next(playing.play(bag(tmp_path / "bag", messages), robot, joints=joints))
+    assert row.distance == pytest.approx(distance, abs=1e-6) and (note in row.note if note else row.note == "")
+
+
+def test_a_stale_value_of_a_mimic_joint_is_not_replaced_by_another(tmp_path):
+    (tmp_path / "gripper.urdf").write_text(GRIPPER)
+    messages = [("/joint_states", START, joint_message(START, {"grip2": 0.04}))]
+    messages += [("/joint_states", START + 900 * MS, joint_message(START + 900 * MS, {"grip": 0.01}))]
+    messages.append(("/tf_static", START, tf_message(transform(0, "hand", "camera"))))
+    messages.append(("/points", START + 901 * MS, cloud_message(START + 901 * MS, "camera", [[0, -0.1, 0]])))
+    robot = {"file": tmp_path / "gripper.urdf", "model": "triangles"}
+    unknown(playing.play(bag(tmp_path / "bag", messages), robot), "JointState of 'grip2': the nearest is 0.901 s older")
+
+
+def test_a_camera_on_a_link_whose_joint_is_beyond_its_limit_is_where_it_is_measured(robot, tmp_path):
+    messages = [("/joint_states", START, joint_message(START, {"shoulder": 2.1, "spin": 0.0}))]  # at most 2
+    messages.append(("/eye/points", START, cloud_message(START, "eye", scene(START))))
+    row = next(playing.play(bag(tmp_path / "bag", messages), robot))
+    poses = robot.poses([2.1, 0.0], ignore_limits=True)
+    eye = robot.link_pose("eye", [2.1, 0.0], ignore_limits=True)
+    r = clearance.Query(robot, clearance.MinDistance())(scene(START).astype("f4"), poses=poses, cloud_pose=eye)
+    assert row.state == r.state.name and row.distance == pytest.approx(r.distance, abs=1e-6)
+
+
+def test_a_transform_that_is_none_is_named_in_each_row_that_needs_it(robot, tmp_path):
+    messages = [each for each in drive(2) if each[0] != "/tf_static"]
+    messages.append(("/tf_static", START, tf_message(transform(0, "base", "mast", turn=(0, 0, 0, 0)))))
+    played = playing.play(bag(tmp_path / "bag", messages), robot, topics="/lidar/points")
+    unknown(played, "a transform of 'mast' in 'base' was refused: it is no rigid pose, because its quaternion is 0, 0, 0, 0")
+    assert any("'mast'" in note for note in played.notes)
+
+
+def test_frames_may_begin_with_a_slash(robot, tmp_path, drive_bag):
+    messages = []
+    for topic, log_time, message in drive():
+        if topic in ("/tf", "/tf_static"):
+            for each in message.transforms:
+                each.header.frame_id, each.child_frame_id = f"/{each.header.frame_id}", f"/{each.child_frame_id}"
+        elif hasattr(message, "header") and message.header.frame_id:
+            message.header.frame_id = f"/{message.header.frame_id}"
+        messages.append((topic, log_time, message))
+    plain = [(row.topic, row.state, row.distance) for row in playing.play(drive_bag, robot)]
+    for options in ({}, {"base_frame": "/base"}, {"base_frame": "base"}):
+        rows = playing.play(bag(tmp_path / f"bag{len(options)}{options.get('base_frame', '')[:1] == '/'}", messages), robot,
+                            **options)  # fmt: skip
+        assert [(row.topic, row.state, row.distance) for row in rows] == plain
+
+
+FIELD = {
+    "60-pointcloud2-row-step/organised_right": 0.5,
+    "60-pointcloud2-row-step/organised_step_is_total": 0.5,
+    "60-pointcloud2-row-step/one_row_step_0": 0.5,
+    "60-pointcloud2-row-step/one_row_step_of_another": 0.5,
+    "62-pointcloud2-big-endian/bag": "big-endian",
+    "65-compressed-depth/bag": 0.5,
+    "65-compressed-depth/with_cloud": 0.5,
+    "67-ros1-in-mcap/converted.mcap": 0.5,
+    "67-ros1-in-mcap/protobuf.mcap": "encoded as 'protobuf'",
+    "73-transform-zero-quaternion/bag": "no rigid pose, because its quaternion is 0, 0, 0, 0",
+    "73-transform-zero-quaternion/slashes": 0.5,
+    "75-measured-mimic-joint/bag": 0.01,
+}
+
+
+@pytest.mark.parametrize("case", FIELD)
+def test_recordings_of_the_field_have_their_right_answers(case):
+    from conftest import shared
+
+    path = shared(f"field/{case}")
+    folder = path.parents[len(path.relative_to(shared("field")).parts) - 2]
+    robot = {"file": next(folder.glob("*.urdf")), "model": "triangles"}
+    expected = FIELD[case]
+    if "protobuf" in case:
+        with pytest.raises(ValueError, match=expected):
+            playing.play(path, robot)
+        return
+    rows = list(playing.play(path, robot))
+    if isinstance(expected, str):
+        unknown(rows, expected)
+    else:
+        assert min(row.distance for row in rows) == pytest.approx(expected, abs=1e-6)
+        assert all(row.state == "free" for row in rows)
+
+
+def test_every_recording_of_the_field_is_asked():
+    from conftest import shared
+
+    field = shared("field")
+    there = {
+        str((each.parent if each.stem == each.parent.name else each).relative_to(field)) for each in field.rglob("*.mcap")
+    }
+    assert there == set(FIELD)
+
+
 # ---- the command
+
+
+def test_a_reader_that_goes_away_ends_the_command_without_a_traceback(urdf, drive_bag, tmp_path):
+    words = [sys.executable, "-m", "clearance", "play", str(drive_bag), "--robot", str(urdf), "--spheres", "64"]
+    for more in ([], ["--csv", str(tmp_path / "all.csv")]):
+        with subprocess.Popen(words + more, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+            first = child.stdout.readline()
+            child.stdout.close()
+            said = child.stderr.read()
+        assert " free: " in first and child.returncode == 141
+        assert "Traceback" not in said and "Broken" not in said and "leaked" not in said, said
+    with open(tmp_path / "all.csv", newline="") as file:
+        assert len(list(csv.DictReader(file))) == 24  # what is written is whole
+
+
+def test_an_option_with_one_value_is_given_once(urdf, drive_bag, capsys):
+    with pytest.raises(SystemExit):
+        played(capsys, drive_bag, "--robot", urdf, "--base-frame", "a", "--base-frame=b")
+    assert "--base-frame is given 2 times, and it has one value" in capsys.readouterr().err
+    for more in (("--joint", "spin=1", "--joint", "spin=2"), ("--joint", "spin=1", "--joints", "spin=2"),
+                 ("--package", "a=b", "--package", "a=c")):  # fmt: skip
+        status, _, err = played(capsys, drive_bag, "--robot", urdf, *more)
+        assert status == 1 and "once for each name" in err
+
+
+def test_joints_are_said_in_either_form(urdf, robot, tmp_path, capsys):
+    folder = bag(tmp_path / "bag", [each for each in drive(2) if each[0] not in ("/joint_states", "/colour/image_raw")])
+    expected = [row.distance for row in playing.play(folder, robot, joints={"shoulder": 0.5, "spin": 1.0})]
+    assert expected == [row.distance for row in playing.play(folder, robot, joints=[0.5, 1.0])]
+    for words in (["--joint", "spin=1", "--joint", "shoulder=0.5"], ["--joints", "spin=1,shoulder=0.5"], ["--joints", "0.5,1"],
+                  ["--joint", "spin=1", "--joints", "shoulder=0.5"]):  # fmt: skip
+        status, out, _ = played(capsys, folder, "--robot", urdf, "--spheres", 64, *words)
+        assert status == 0 and [f" {far:.4f} m " in line for far, line in zip(expected, out.splitlines())] == [True] * 6
+    status, _, err = played(capsys, folder, "--robot", urdf, "--joints", "1")
+    assert status == 1 and "--joints has 1 values, and the robot has 2 joints: shoulder, spin" in err
 
 
 def played(capsys, *arguments):
@@ -434,7 +722,9 @@ def test_the_command_writes_tables(urdf, robot, drive_bag, tmp_path, capsys):
         "--check",
     )
     assert (
-        status == 0 and err == "" and "24 frames, 0 of them unknown, 0 of them differ from NumPy; the least is" in out
+        status == 0
+        and err == "note: no depth, so not played: /colour/image_raw (rgb8)\n"
+        and "24 frames, 0 of them unknown, 0 of them differ from NumPy; the least is" in out
     )
     rows = list(playing.play(drive_bag, robot, check=True))
     with open(tmp_path / "a.csv", newline="") as file:
@@ -446,6 +736,7 @@ def test_the_command_writes_tables(urdf, robot, drive_bag, tmp_path, capsys):
             float(said["distance"]) == kept["distance"] == row.distance and said["state"] == kept["state"] == row.state
         )
         assert int(said["point"]) == kept["point"] == row.point and kept["at_x"] == row.at[0]
+        assert int(said["stamp_ns"]) == kept["stamp_ns"] == row.stamp_ns
         assert json.loads(said["dropped"]) == json.loads(kept["dropped"]) == row.dropped
 
 
@@ -456,7 +747,7 @@ def test_the_command_fails_where_it_must(urdf, tmp_path, capsys):
     file = write_bag(tmp_path / "b", sorted(drive(60), key=lambda each: each[1]))
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     status, out, err = played(capsys, file, *arguments)
-    assert status == 1 and "truncated" in err and len(err.strip().splitlines()) == 1 and " free: " in out
+    assert status == 1 and "truncated" in err and len(err.strip().splitlines()) == 2 and " free: " in out
     status, _, err = played(capsys, tmp_path / "a", *arguments, "--joint", "shoulder")
     assert status == 1 and "NAME=VALUE" in err
     status, _, err = played(capsys, tmp_path / "none.mcap", *arguments)

@@ -638,7 +638,9 @@ def _(s):
         check_each_point(s, r.distance, expected, d_max)
         for number in np.flatnonzero(np.isfinite(r.distance))[:100]:
             s.check_pair(r.distance[number], *s.place(number), r.part[number], r.primitive[number])
-            assert r.certain.lower(float(r.distance[number])) <= max(expected[number], 0)
+            distance = float(r.distance[number])
+            of_its_part = r.certain.lower(distance, part=r.part[number])
+            assert r.certain.lower(distance) <= of_its_part <= max(expected[number], 0)
         nothing = ~np.isfinite(r.distance)
         assert (r.part[nothing] == clearance.none).all() and (r.primitive[nothing] == clearance.none).all()
         if s.exact and d_max == np.inf:
@@ -675,6 +677,10 @@ def _(s):
         check_each_point(s, r.distance, s.of_parts.reshape(-1), d_max)
         for k in range(len(s.spheres)):
             check_each_point(s, r.of(k), s.of_parts[k], d_max)
+            assert r.certain.lower(0.5) <= r.certain.lower(0.5, part=k) <= 0.5
+        for wrong in (len(s.spheres), -1):
+            with pytest.raises(IndexError):
+                r.certain.lower(0.5, part=wrong)
 
 
 @check("NearestK")

@@ -81,6 +81,67 @@ def image_message(stamp, frame, image, encoding=None, padding=0, big=0):
     )
 
 
+def png(image):
+    """A 16-bit grey PNG."""
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in image)
+    head = struct.pack(">IIBBBBB", image.shape[1], image.shape[0], 16, 0, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def rvl(image):
+    """An image in RVL, by its paper: runs of zeros and of differences, in nibbles of three bits."""
+    nibbles = []
+
+    def put(value):
+        while True:
+            nibbles.append(value & 7 | (8 if value > 7 else 0))
+            value >>= 3
+            if not value:
+                return
+
+    pixels, last, i = image.ravel().astype(int), 0, 0
+    while i < len(pixels):
+        begin = i
+        while i < len(pixels) and pixels[i] == 0:
+            i += 1
+        put(i - begin)
+        begin = i
+        while i < len(pixels) and pixels[i] != 0:
+            i += 1
+        put(i - begin)
+        for pixel in pixels[begin:i]:
+            step = pixel - last
+            put(int(2 * step if step >= 0 else -2 * step - 1))
+            last = pixel
+    nibbles += [0] * (-len(nibbles) % 8)
+    words = [sum(n << 28 - 4 * k for k, n in enumerate(nibbles[at : at + 8])) for at in range(0, len(nibbles), 8)]
+    return struct.pack("<II", image.shape[1], image.shape[0]) + struct.pack(f"<{len(words)}I", *words)
+
+
+def compressed_message(stamp, frame, image, *, by="png", step=100.0, farthest=10.0, kind=None):
+    """As compressed_depth_image_transport writes it: uint16 as it is, float32 as inverse depths with `step`."""
+    a, b = 0.0, 0.0
+    if image.dtype.kind == "f":
+        a = np.float32(step) * (np.float32(step) + np.float32(1))
+        b = np.float32(1) - a / np.float32(farthest)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            packed = np.where(image < farthest, a / image.astype("f4") + b, 0).astype("u2")
+    else:
+        packed = image
+    encoding = {"u": "16UC1", "f": "32FC1"}[image.dtype.kind]
+    data = struct.pack("<iff", 0, a, b) + (rvl(packed) if by == "rvl" else png(packed))
+    return make(
+        "sensor_msgs/msg/CompressedImage",
+        header=header(stamp, frame),
+        format=f"{encoding}; compressedDepth{' rvl' if by == 'rvl' else ''}" if kind is None else kind,
+        data=np.frombuffer(data, np.uint8),
+    )
+
+
 def info_message(stamp, frame, shape, k, d=(), model="plumb_bob", p=None, binning=1, roi=(0, 0, 0, 0)):
     fx, fy, cx, cy = k
     matrix = np.array([fx, 0, cx, 0, fy, cy, 0, 0, 1], float)
@@ -343,6 +404,68 @@ def test_an_mcap_without_index_or_profile_is_read_as_written(tmp_path, profile, 
     assert (damage is None) == end
 
 
+def mcap_of(profile, channels, messages):
+    """An MCAP file without an index. channels: (topic, type, encoding of the schema, of messages); messages: (channel,
+    log time, bytes)."""
+    data = recordings.MAGIC + mcap_record(1, text(profile) + text(""))
+    for number, (topic, kind, schema, encoding) in enumerate(channels, 1):
+        data += mcap_record(3, number.to_bytes(2, "little") + text(kind) + text(schema) + text("x"))
+        data += mcap_record(4, number.to_bytes(2, "little") * 2 + text(topic) + text(encoding) + text(b""))
+    for number, log_time, body in messages:
+        data += mcap_record(5, (number + 1).to_bytes(2, "little") + bytes(4) + log_time.to_bytes(8, "little") * 2 + body)
+    return data + mcap_record(15, bytes(4)) + mcap_record(2, bytes(20)) + recordings.MAGIC
+
+
+@pytest.mark.parametrize("profile", ["ros1", "", "x", "something-longer", "ros2"])
+def test_ros_1_messages_in_an_mcap_file_are_read_and_others_are_named(tmp_path, profile):
+    """As `mcap convert old.bag new.mcap` writes them, beside what no ROS writes."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    stamp = store.types["builtin_interfaces/msg/Time"](sec=5, nanosec=7)
+    head = store.types["std_msgs/msg/Header"](seq=3, stamp=stamp, frame_id="camera")
+    joints = store.types["sensor_msgs/msg/JointState"](head, ["a"], np.array([1.5]), np.zeros(0), np.zeros(0))
+    old = bytes(store.serialize_ros1(joints, joints.__msgtype__))
+    message = joint_message(START, {"a": 2.5})
+    new = bytes(STORE.serialize_cdr(message, message.__msgtype__))
+    channels = [
+        ("/old", "sensor_msgs/JointState", "ros1msg", "ros1"),
+        ("/new", "sensor_msgs/msg/JointState", "ros2msg", "cdr"),
+        ("/other", "foxglove.PointCloud", "protobuf", "protobuf"),
+        ("/text", "note", "jsonschema", "json"),
+    ]
+    file = tmp_path / "file.mcap"
+    file.write_bytes(mcap_of(profile, channels, [(0, START, old), (1, START + 1, new), (2, START + 2, b"\x08\x01")]))
+    with recordings.Recording(file) as recording:
+        assert recording.damage is None
+        assert recording.topics == {
+            "/old": "sensor_msgs/msg/JointState",
+            "/new": "sensor_msgs/msg/JointState",
+            "/other": "foxglove.PointCloud",
+            "/text": "note",
+        }
+        assert recording.encodings == {"/old": "ros1", "/new": "cdr", "/other": "protobuf", "/text": "json"}
+        found = [each.decode() for each in recording.messages(["/old", "/new"])]
+        assert [each.position[0] for each in found] == [1.5, 2.5]
+        assert recordings.nanoseconds(found[0].header.stamp) == 5_000_000_007
+        with pytest.raises(ValueError, match="/other is encoded as 'protobuf', which is not read"):
+            list(recording.messages())
+    file.write_bytes(file.read_bytes()[:-60])
+    found, damage = read_all(file, ["/old", "/new"])
+    assert damage is not None and "truncated" in damage and found[0].decode().position[0] == 1.5
+
+
+def test_rosbags_is_left_as_it_was(tmp_path):
+    from rosbags.rosbag2 import storage_mcap
+
+    before = storage_mcap.get_msgdef
+    (tmp_path / "good.mcap").write_bytes(mcap_of("ros1", [("/a", "b", "protobuf", "protobuf")], []))
+    (tmp_path / "bad.mcap").write_bytes(b"no recording, but long enough to have a footer at its end")
+    recordings.Recording(tmp_path / "good.mcap").close()
+    assert storage_mcap.get_msgdef is before
+    with pytest.raises(ValueError):
+        recordings.Recording(tmp_path / "bad.mcap")
+    assert storage_mcap.get_msgdef is before
+
+
 def test_what_is_no_recording_is_a_sentence(tmp_path):
     (tmp_path / "empty.mcap").write_bytes(b"")
     (tmp_path / "other.mcap").write_bytes(b"no recording at all, but long enough to have a footer")
@@ -414,6 +537,19 @@ def test_a_cloud_without_points_is_empty():
     assert recordings.cloud(cloud_message(START, "f", np.zeros((0, 3)))).shape == (0,)
 
 
+@pytest.mark.parametrize("said", [0, 1, 55, 57, 112, 280, 2**31])
+def test_a_row_step_that_cannot_be_is_not_read_where_rows_lie_without_gaps(said):
+    points = np.random.default_rng(0).uniform(-1, 1, (5, 7, 3)).astype("f4")
+    message = cloud_message(START, "f", points, point_step=16)
+    message.row_step = said
+    view = recordings.cloud(message)
+    assert all(np.array_equal(view[axis], points[..., k]) for k, axis in enumerate("xyz"))
+    image = np.arange(35, dtype="<u2").reshape(5, 7)
+    message = image_message(START, "f", image)
+    message.step = said
+    assert np.array_equal(recordings.depth(message), image)
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -424,7 +560,7 @@ def test_a_cloud_without_points_is_empty():
         ({"point_step": 10}, "point_step"),
         ({"point_step": 0}, "point_step"),
         ({"width": 21}, "holds"),
-        ({"height": 2, "width": 10, "row_step": 100}, "row_step"),
+        ({"height": 3, "width": 6, "row_step": 90}, "in rows of 90 bytes .row_step., but holds 320"),
         ({"data": np.zeros(3, np.uint8)}, "holds 3 bytes"),
     ],
 )
@@ -444,6 +580,42 @@ def test_a_cloud_of_integers_is_refused():
 # ---- images and cameras
 
 
+@pytest.mark.parametrize("by", ["png", "rvl"])
+def test_compressed_depth_is_what_was_packed(by):
+    random = np.random.default_rng(4)
+    image = random.integers(0, 65536, (23, 31)).astype("u2")
+    image[random.random(image.shape) < 0.3] = 0
+    image[5:9] = 0
+    found, off = recordings.compressed_depth(compressed_message(START, "f", image, by=by))
+    assert off is None and found.dtype == np.uint16 and np.array_equal(found, image)
+    depth = random.uniform(0.2, 12, (23, 31)).astype("f4")
+    depth[3] = np.nan
+    found, off = recordings.compressed_depth(compressed_message(START, "f", depth, by=by))
+    lost = ~(depth < 10)
+    assert found.dtype == off.dtype == np.float32 and np.array_equal(np.isnan(found), lost) and lost.sum() > 40
+    there = depth[~lost]
+    assert (found[~lost] >= there * (1 - 1e-6)).all() and (found[~lost] - off[~lost] <= there).all()
+    assert (off[~lost] < 1.1 * there**2 / 10100 + 1e-6).all()
+
+
+@pytest.mark.parametrize(
+    ("kind", "cut", "says"),
+    [
+        ("bgr8; jpeg compressed bgr8", None, "bgr8; jpeg compressed bgr8.*which is no depth"),
+        ("", None, "which is no depth"),
+        ("16UC1; compressedDepth", 5, "ends in the middle"),
+        ("16UC1; compressedDepth", 40, "cut short"),
+        ("16UC1; compressedDepth rvl", None, "more than the limit"),
+        ("32FC1; compressedDepth", None, "parameters that no depth follows from"),
+    ],
+)
+def test_a_compressed_image_that_is_no_depth_is_refused(kind, cut, says):
+    message = compressed_message(START, "f", np.arange(35, dtype="u2").reshape(5, 7), kind=kind)
+    message.data = message.data[:cut]
+    with pytest.raises(ValueError, match=says):
+        recordings.compressed_depth(message)
+
+
 @pytest.mark.parametrize(("kind", "encoding"), [("<u2", None), ("<f4", None), ("<u2", "mono16")])
 @pytest.mark.parametrize("padding", [0, 6])
 def test_a_depth_image_is_a_view(kind, encoding, padding):
@@ -458,7 +630,7 @@ def test_a_depth_image_is_a_view(kind, encoding, padding):
     [
         ({"is_bigendian": 1}, "big-endian"),
         ({"encoding": "rgb8"}, "rgb8"),
-        ({"step": 5}, "step"),
+        ({"step": 5, "height": 4}, "in rows of 5 bytes .step., but holds 70"),
         ({"height": 9}, "holds"),
         ({"width": 0}, "pixels"),
     ],
@@ -698,9 +870,19 @@ def test_no_transform_is_guessed():
     tree.add(
         tf_message(transform(START, "base", "a", (math.nan, 0, 0)), transform(START, "base", "b", turn=(0, 0, 0, 0)))
     )
-    for name in ("a", "b"):
-        with pytest.raises(recordings.Unknown, match="no rigid pose"):
+    for name, why in (("a", "its translation is nan, 0, 0"), ("b", "its quaternion is 0, 0, 0, 0")):
+        with pytest.raises(recordings.Unknown, match=f"{name!r} in 'base' was refused: it is no rigid pose, because {why}"):
             tree.at("base", name, START, 0.1)
+    # Also of what is between two frames, and of one that was good before.
+    tree.add(tf_message(transform(0, "b", "c"), transform(0, "d", "d"), transform(0, "", "e")), static=True)
+    with pytest.raises(recordings.Unknown, match="no transform names the frame 'base'; a transform of 'b' in 'base' was"):
+        tree.at("base", "c", START, 0.1)
+    assert len(tree.refused) == 4 and all("it does not name two frames" in said for said in tree.refused[2:])
+    tree.add(tf_message(transform(START, "base", "f"), transform(START + 50 * MS, "base", "f", turn=(0, 0, 0, 0))))
+    with pytest.raises(recordings.Unknown, match="0.4 s older.*'f' in 'base' was refused.*quaternion is 0, 0, 0, 0"):
+        tree.at("base", "f", START + 400 * MS, 0.1)
+    tree.add(tf_message(transform(START + 390 * MS, "/base", "/f", turn=(0, 0, 0, 1))))
+    assert tree.at("/base", "f", START + 400 * MS, 0.1) == pytest.approx(np.eye(4))
     tree.add(tf_message(transform(START, "p", "q"), transform(START, "q", "p")))
     with pytest.raises(recordings.Unknown, match="ring"):
         tree.at("base", "p", START, 0.1)

@@ -4,6 +4,7 @@
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import zlib
@@ -459,6 +460,58 @@ def test_a_report_of_played_rows_says_what_is_in_them(tmp_path):
         assert words in told, words
 
 
+def row_of(stamp, topic, distance, lower=None, state=None):
+    lower = max(distance, 0) if lower is None else lower
+    state = state or ("free" if lower > 0 else "collision" if distance < 0 else "possible")
+    return {"stamp": stamp, "topic": topic, "state": state, "distance": distance, "lower": lower, "upper": max(distance, 0),
+            "link": "hand", "point": 3}  # fmt: skip
+
+
+def told_of(tmp_path, rows, *words):
+    """The sentences at the top of the page, as text."""
+    table = "\n".join([",".join(rows[0])] + [",".join(map(str, row.values())) for row in rows])
+    page = page_of(tmp_path, table, *words, name="rows.csv")
+    return re.sub("<.*?>", "", "\n".join(re.findall("<p class=verdict>(.*?)</p>", page))), page
+
+
+def test_the_least_distance_of_a_report_is_the_least(tmp_path):
+    """Collisions all have the lower end 0, and the deepest of them is the worst."""
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        deep = rng.permutation([-0.001, -0.2, -0.05, 0.3, 0.4]).round(3)
+        rows = [row_of(100 + k, "/cloud", far) for k, far in enumerate(deep)]
+        said, page = told_of(tmp_path, rows)
+        at = f"at {100 + deep.argmin()}.000 s, /cloud"
+        assert said == f"The least distance is -0.200 m (certainly 0.000 to 0.000), hand, {at}."
+        assert "<b>1. -0.200 m</b>" in page
+
+
+def test_a_report_has_a_line_for_each_topic(tmp_path):
+    """Frames of several sensors alternate, so those beside one are of others."""
+    rows = [row_of(100 + k / 10, topic, far) for k in range(4)
+            for topic, far in (("/a", -0.001 - k / 1000), ("/b", -0.2 + k / 100), ("/c", 0.5 + k / 10))]  # fmt: skip
+    rows.append(row_of(101, "/d", 0.1, state="unknown"))
+    said, page = told_of(tmp_path, rows)
+    assert said.splitlines() == [
+        "The least distance of /a is -0.004 m (certainly 0.000 to 0.000), hand, at 100.300 s.",
+        "The least distance of /b is -0.200 m (certainly 0.000 to 0.000), hand, at 100.000 s.",
+        "The least distance of /c is 0.500 m (certainly 0.500 to 0.500), hand, at 100.000 s.",
+        "Nothing is known in 1 of 13 frames, because they have no valid point or could not be asked.",
+    ]
+    worst = re.findall(r"<b>\d\. (.*?)</b>.*?<br>(.*?)<", page)
+    assert worst == [("-0.200 m", "100.000 s, /b"), ("-0.004 m", "100.300 s, /a"), ("0.500 m", "100.000 s, /c")]
+
+
+def test_a_report_says_where_the_least_is_least_certain(tmp_path):
+    rows = [row_of(100, "/a", 0.3, 0.05), row_of(101, "/a", 0.2, 0.19), row_of(102, "/a", -0.00001)]
+    said, page = told_of(tmp_path, rows[:2])
+    assert said.splitlines() == [
+        "The least distance is 0.200 m (certainly 0.190 to 0.200), hand, at 101.000 s, /a.",
+        "It is certainly above 0.050 m only, at 100.000 s, /a.",
+    ]
+    assert "-0.000" not in told_of(tmp_path, rows)[1]
+
+
 def test_the_worst_moments_are_dips_and_not_neighbours_of_one():
     from clearance.seeing.report import Moment, worst
 
@@ -748,6 +801,35 @@ def test_view_shows_a_robot_and_a_cloud_of_files(tmp_path, capsys):
     assert picture.stat().st_size > 2000
 
 
+def test_view_takes_a_joint_that_follows_another_by_either_option(tmp_path, monkeypatch, capsys):
+    from test_playing import GRIPPER
+
+    monkeypatch.chdir(tmp_path)
+    pathlib.Path("gripper.urdf").write_text(GRIPPER)
+    np.save("one.npy", np.array([[0, -0.1, 0]], "f4"))
+    words = ["view", "gripper.urdf", "--cloud", "one.npy", "--margin", "0.01"]
+    for joints, said in (
+        (["--joint", "grip=0.01"], "free: 0.080 m"),
+        (["--joint", "grip=0.01", "--joint", "grip2=0.04"], "joint grip2 has a value of its own here"),
+        (["--joints", "grip=0.01,grip2=0.04"], "free: 0.050 m"),
+        (["--joints", "0.02"], "free: 0.070 m"),
+        (["--joint", "grip2=0.04"], "note: at rest: grip\n"),
+    ):
+        assert main([*words, *joints]) == 0
+        assert said in capsys.readouterr().out
+    page = pytest.importorskip("viser") and clearance.seeing.show(
+        clearance.Robot.from_urdf("gripper.urdf", model="triangles"),
+        np.load("one.npy"),
+        {"grip": 0.01, "grip2": 0.04},
+        port=8237,
+        wait=False,
+    )
+    try:
+        assert page._answer(page.values)[1].distance == pytest.approx(0.05, abs=1e-6)
+    finally:
+        page.close()
+
+
 @pytest.mark.parametrize(
     "words, sentence",
     [
@@ -757,7 +839,10 @@ def test_view_shows_a_robot_and_a_cloud_of_files(tmp_path, capsys):
         (["ARM", "--depth", "d.npy"], "--depth needs --intrinsics"),
         (["--joints", "knee=1"], 'no joint "knee"'),
         (["--joints", "elbow"], "NAME=VALUE"),
-        (["--joints", "elbow=x"], "--joints elbow="),
+        (["--joints", "elbow=x"], "--joint elbow="),
+        (["--joints", "0.1,0.2"], "--joints has 2 values, and the robot has 5 joints"),
+        (["--joints", "0,0,0", "--joint", "elbow=1"], "--joint cannot give another"),
+        (["--joint", "elbow=1", "--joints", "elbow=2"], "once for each name"),
         (["--zones", "a"], "--zones takes"),
         (["--picture", "a.gif"], ".png"),
         (["--joints", "elbow=99"], "elbow"),

@@ -186,8 +186,8 @@ def test_a_frame_is_the_same_by_its_points_and_by_its_depth_image():
     points = read_pcd(shared(frame + ".pcd"))
     sphere = np.array([[0.1, 0, 0.4, 0.05]], "f4")
     robot = clearance.Robot.from_spheres({"a": sphere})
-    by_depth = clearance.Query(robot, clearance.Distances())(depth=depth, intrinsics=(525, 525, 320, 240))
-    by_points = clearance.Query(robot, clearance.Distances())(points)
+    by_depth = clearance.Query(robot, clearance.Distances())(depth=depth, intrinsics=(525, 525, 320, 240), rest=True)
+    by_points = clearance.Query(robot, clearance.Distances())(points, rest=True)
     assert by_depth.counts.valid == by_points.counts.valid > 200_000
     both = np.isfinite(by_points.distance)
     assert (both == np.isfinite(by_depth.distance)).all()
@@ -198,7 +198,7 @@ def test_a_real_frame_against_spheres_is_as_numpy_says(rng):
     points = read_pcd(shared(frame + ".pcd")).reshape(480, 640, 3)
     spheres = np.column_stack([rng.uniform(-0.5, 0.5, (64, 3)) + (0, 0, 1), rng.uniform(0.02, 0.1, 64)]).astype("f4")
     robot = clearance.Robot.from_spheres({"a": spheres})
-    r = clearance.Query(robot, clearance.Distances(which=True))(points)
+    r = clearance.Query(robot, clearance.Distances(which=True))(points, rest=True)
     flat = points.reshape(-1, 3).astype("f8")
     valid = np.isfinite(flat).all(axis=1)
     d = np.full(len(flat), np.inf)
@@ -206,5 +206,5 @@ def test_a_real_frame_against_spheres_is_as_numpy_says(rng):
         d[valid] = np.minimum(d[valid], np.linalg.norm(flat[valid] - s[:3], axis=1) - s[3])
     assert np.abs(r.distance - d)[valid].max() < near_enough
     assert np.isnan(r.distance[~valid]).all()
-    near = clearance.Query(robot, clearance.NearestK(10))(points)
+    near = clearance.Query(robot, clearance.NearestK(10))(points, rest=True)
     assert near.pairs["distance"] == pytest.approx(np.sort(d)[:10], abs=near_enough)

@@ -142,8 +142,8 @@ void ask_about_pairs(const scene<inner_sphere>& s, std::size_t clouds) {
   const auto points = gpu.copy_in(all.span.bytes());
   const placed cloud{all.span.at(points.data()), s.cloud_pose};
   const std::vector several(clouds, cloud);
-  clearance::query zones(gpu, model, clearance::zones{});
-  clearance::query within(gpu, model, clearance::within{});
+  clearance::query zones(gpu, model, clearance::zones{{0.0}});
+  clearance::query within(gpu, model, clearance::within{{0.0}});
   clearance::query in_collision(gpu, model, clearance::in_collision{});
   clearance::query per_part(gpu, model, clearance::distances_per_part{});
   clearance::query filter(gpu, model, clearance::self_filter{});

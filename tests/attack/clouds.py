@@ -99,7 +99,7 @@ def read_pcd(data):
     demand(form == "ascii" or ("SIZE" in header and "TYPE" in header), "no SIZE or TYPE")
     sizes = [whole(w, 1, 8) for w in header.get("SIZE", ["4"] * len(names))]
     kinds = header.get("TYPE", ["F"] * len(names))
-    counts = [whole(w, 1) for w in header.get("COUNT", ["1"] * len(names))]
+    counts = [whole(w) for w in header.get("COUNT", ["1"] * len(names))]
     letters = {"F": {4: "f", 8: "d"}, "I": {1: "b", 2: "h", 4: "i", 8: "q"}, "U": {1: "B", 2: "H", 4: "I", 8: "Q"}}
     demand(all(s in letters.get(k, {}) for s, k in zip(sizes, kinds)), "an unknown type")
     demand(all(counts[names.index(axis)] == 1 for axis in "xyz"), "a coordinate of several values")

@@ -5,6 +5,7 @@ Unknown."""
 
 import math
 import os
+import re
 from dataclasses import dataclass, field
 
 import clouds
@@ -14,7 +15,7 @@ from geometry import IDENTITY, apply, compose, distance_range, inverse, quaterni
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
 FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between", "--fields", "--strict"}
-PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing"}
+PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing", "--cloud-scale"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",
               "--check", "--scene", "--unfold-limit", "--zones", "--min-points", "--distances", "--d-max", "--self-filter", "--min-support",
@@ -115,6 +116,7 @@ class _Options:
             if name in ("--attach", "--attach-pose"):
                 attached = "bare" if name == "--attach" else "placed"
             if name in PER_CLOUD:
+                demand(name not in (before if current is None else current["own"]), f"{name} twice for one cloud")
                 (before if current is None else current)[name] = value
                 if current is not None:
                     current["own"].add(name)
@@ -146,7 +148,7 @@ class _Options:
             demand(_real(self.one["--check"]) >= 0, "a margin below 0")
         self._questions()
         for sensor in [before] + self.sensors:
-            for name, reader in (("--camera-pose", _pose), ("--intrinsics", lambda t: _reals(t, 4)), ("--depth-scale", _real),
+            for name, reader in (("--camera-pose", _pose), ("--intrinsics", lambda t: _reals(t, 4)), ("--depth-scale", _real), ("--cloud-scale", _real),
                                  ("--range", lambda t: _reals(t, 2, False))):
                 if name in sensor:
                     reader(sensor[name])
@@ -155,7 +157,7 @@ class _Options:
         """What is said of all clouds is for one of them."""
         images = sum(os.path.splitext(sensor["file"])[1].lower() == ".png" for sensor in sensors)
         demand(not sensors or images > 0 or not self.before.keys() & {"--intrinsics", "--depth-scale"}, "an option of images, and none")
-        demand(not sensors or images < len(sensors) or not self.before.keys() & {"--use-viewpoint", "--zero-is-missing"}, "an option of clouds, and none")
+        demand(not sensors or images < len(sensors) or not self.before.keys() & {"--use-viewpoint", "--zero-is-missing", "--cloud-scale"}, "an option of clouds, and none")
 
     def _questions(self):
         if "--zones" in self.one:
@@ -228,6 +230,8 @@ def _points(sensor, files):
     ending, own = os.path.splitext(name)[1].lower(), sensor.get("own", set())  # what is said of all clouds may fit others alone
     near, far = _reals(sensor["--range"], 2, False) if "--range" in sensor else (0.0, math.inf)
     demand(0 <= near < far, "a range that is none")
+    if "--cloud-scale" in sensor:
+        raise Unknown("a cloud in another unit")
     if ending == ".png":
         demand("--intrinsics" in sensor, "an image without intrinsics")
         demand(not own & {"--use-viewpoint", "--zero-is-missing"}, "an option of clouds for an image")
@@ -278,8 +282,8 @@ def _frame(robot, given, base, sensors, carriers, files):
 def _robot(options, files):
     name = options.one["--robot"]
     demand(name.removeprefix("./") in files, f"there is no {name[:40]!r}")
-    for text in options.many.get("--package", []):
-        _assignment(text)
+    names = [_assignment(text)[0] for text in options.many.get("--package", [])]
+    demand(len(set(names)) == len(names), "a package twice")
     return robots.Robot(files[name.removeprefix("./")], files, options.one.get("--geometry") == "visual",
                         options.many.get("--exclude-link", []))
 
@@ -319,6 +323,7 @@ def _query(case):
             raise Unknown("a scene by another name")
     carriers = [_carrier(robot, given, options.base, sensor) for sensor in options.sensors]
     options.held(robot, case.files)
+    _check_sizes(options.sensors, case.files)
     return [_frame(robot, given, options.base, options.sensors, carriers, case.files)]
 
 
@@ -342,6 +347,8 @@ def _trajectory(data, robot, fixed, ignore):
 
 def _rows(options, robot, name, files):
     demand(name in files, f"no {name[:40]!r}")
+    if files[name][:2] in (b"\xff\xfe", b"\xfe\xff") or b'"' in files[name]:
+        raise Unknown("text in UTF-16, or words in quotes")
     fixed = dict(_assignment(text) for text in options.many.get("--joint", []))
     fixed = {joint: _real(value) for joint, value in fixed.items()}
     return _trajectory(files[name], robot, fixed, "--ignore-limits" in options.flags)
@@ -355,16 +362,33 @@ def _plan(case):
     _check_packing(options, robot, case.files)
     carriers = [_carrier(robot, rows[0], options.base, sensor) for sensor in options.sensors]
     options.held(robot, case.files)
+    _check_sizes(options.sensors, case.files)
     return [_frame(robot, row, options.base, options.sensors, carriers, case.files) for row in rows]
+
+
+def _natural(name):
+    """By bytes, but numbers by their values."""
+    return [(48, int(word)) if word[0] in "0123456789" else (ord(word), -1) for word in re.findall("[0-9]+|[^0-9]", name, re.S)], name
+
+
+def _check_sizes(sensors, files):
+    """Images that share intrinsics have one size."""
+    heads = [files.get(sensor["file"].removeprefix("./"), b"")[:24] for sensor in sensors
+             if os.path.splitext(sensor["file"])[1].lower() == ".png" and "--intrinsics" not in sensor.get("own", ())]
+    sizes = {head[16:24] for head in heads if len(head) == 24 and head.startswith(b"\x89PNG\r\n\x1a\n")}
+    demand(len(sizes) < 2, "images of several sizes for one camera")
 
 
 def _listed(case, where):
     """The files of the frames, in their order."""
-    if where in case.files:
+    if where in case.files and os.path.splitext(where)[1].lower() in (".pcd", ".ply", ".xyz", ".png"):
+        listed = [where]
+    elif where in case.files:
         listed = [os.path.normpath(name) for name in (line.strip(" \t") for line in lines_of(case.files[where])) if name]
     else:
         endings = (".pcd", ".ply", ".xyz", ".txt", ".png")
-        held = sorted(name for name in [*case.files, *case.links] if os.path.dirname(name) == where and os.path.splitext(name)[1].lower() in endings)
+        held = sorted((name for name in [*case.files, *case.links] if os.path.dirname(name) == where and os.path.splitext(name)[1].lower() in endings),
+                      key=_natural)
         listed = [os.path.join(where, case.links[name] or "") if name in case.links else name for name in held]
     demand(listed and all(name in case.files for name in listed), "a frame that does not exist")
     return listed
@@ -381,6 +405,7 @@ def _run(case):
     demand(len(rows) in (1, len(listed)), "rows for other than the frames")
     sensors = [dict(options.before, file=name) for name in listed]
     options.check_all(sensors)
+    _check_sizes(sensors, case.files)
     rows = rows if len(rows) > 1 else rows * len(listed)
     options.held(robot, case.files)
     frames, carriers = [], [_carrier(robot, row, options.base, sensor) for row, sensor in zip(rows, sensors)]

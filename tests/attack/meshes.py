@@ -135,6 +135,8 @@ def read_stl(data):
             demand(all(map(math.isfinite, values)), "a vertex that is not finite")
             vertices += [values[0:3], values[3:6], values[6:9]]
         return vertices, [[i, i + 1, i + 2] for i in range(0, len(vertices), 3)]
+    if len(data) >= 84 and 0 < len(data) - 84 - 50 * struct.unpack_from("<I", data, 80)[0] < 50:
+        raise Unknown("less than a triangle after the last one")
     demand(b"\0" not in data, "neither text nor as long as a binary STL file says")
     return _stl_text(data)
 

@@ -261,6 +261,10 @@ def glb_json(rng, data):
     return writers.pack_glb(text, data[28 + size:])
 
 
+def gltf_text(rng, data):
+    return glb_json(rng, writers.pack_glb(data, b""))[20:-8]
+
+
 def glb_chunk(rng, data):
     """The lengths and kinds of chunks."""
     at = rng.choice([4, 8, 12, 16, 20 + struct.unpack_from("<I", data, 12)[0] if len(data) > 20 else 4])
@@ -306,7 +310,7 @@ def ist(rng, data):
 
 STL = [word4, word4, word4]
 KINDS = {
-    "urdf": XML * 3 + [urdf_words.damage] * 12 + BYTES, "dae": (XML + [asset]) * 3 + BYTES, "glb": GLB * 2 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
+    "urdf": XML * 3 + [urdf_words.damage] * 12 + BYTES, "dae": (XML + [asset]) * 3 + BYTES, "glb": GLB * 2 + BYTES, "gltf": [gltf_text] * 8 + BYTES, "png": [png] * 16 + BYTES, "ist": [ist] * 8 + BYTES,
     "stl binary": STL * 3 + BYTES, "ply mesh binary": HEADER + STL + BYTES, "ply cloud binary": HEADER + STL + BYTES,
     "pcd binary": HEADER + STL + BYTES, "pcd compressed": HEADER + STL + BYTES, "pack": TEXT + STL,
 }

@@ -3,6 +3,7 @@
 stands, expect.py has it."""
 
 import json
+import math
 import os
 import random
 import shlex
@@ -86,6 +87,34 @@ def _sizes():
     yield "pcd-unfolds", Case("regression", "query", seen, {"r.urdf": box, "c.pcd": head + struct.pack("<II", len(packed), 3 * points) + packed}, "")
 
 
+def _obj(triangles):
+    """Each triangle with corners of its own."""
+    lines = ["v %.4g %.4g %.4g" % corner for triangle in triangles for corner in triangle]
+    return "\n".join(lines + [f"f {3 * k + 1} {3 * k + 2} {3 * k + 3}" for k in range(len(triangles))] + [""]).encode()
+
+
+def _unclosed():
+    """Small meshes that are long to close: they end in 20 s of the processor below 1 MB, in 60 s below 10."""
+    rng = random.Random(3)
+    point = lambda: tuple(rng.uniform(-0.5, 0.5) for _ in range(3))
+    corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+    sheets = []
+    for k in range(4000):
+        a, b, c, d = [(x, y, k / 8000) for x, y in corners]
+        sheets += [(a, b, c), (a, c, d)]
+    around = [(0.5 * math.cos(k), 0.5 * math.sin(k), 0.1 * (k % 3)) for k in range(20_000)]
+    edge = b"v 0 0 -0.5\nv 0 0 0.5\n" + b"".join(b"v %.4g %.4g %.4g\n" % at for at in around)
+    edge += b"".join(b"f 1 2 %d\n" % (k + 3) for k in range(len(around)))
+    boxes = b"".join(b'<collision><origin xyz="%.3f %.3f %.3f"/><geometry><box size=".1 .1 .1"/></geometry></collision>' % point() for _ in range(20_000))
+    meshes = {"sheets": _obj(sheets), "random": _obj([(point(), point(), point()) for _ in range(8000)]), "one-edge": edge}
+    query = [["--robot", "r.urdf"], ["--cloud", "c.xyz"], ["--model", "triangles"], ["--json", None]]
+    for name, mesh in meshes.items():
+        robot = b'<robot name="r"><link name="a"><collision><geometry><mesh filename="m.obj"/></geometry></collision></link></robot>'
+        yield "unclosed-" + name, Case("regression", "query", query, {"r.urdf": robot, "m.obj": mesh, "c.xyz": b"3 0 0\n"}, "", cpu=20)
+    robot = b'<robot name="r"><link name="a">' + boxes + b"</link></robot>"
+    yield "unclosed-boxes", Case("regression", "query", query, {"r.urdf": robot, "c.xyz": b"3 0 0\n"}, "", cpu=60)
+
+
 def _flat_png(side, depth=1500):
     """Many equal pixels in few bytes."""
     packer, row = zlib.compressobj(9), b"\0" + struct.pack(">H", depth) * side
@@ -142,7 +171,7 @@ def _questions():
 
 def cases(data):
     """[(name, case, what is right or None), ...]; those with files of their own everywhere, the others where the data is."""
-    return [(name, case, "manners") for name, case in (*_sizes(), *_questions())] + _recorded(data and os.path.join(data, "attack"), _TABLE) + [
+    return [(name, case, "manners") for name, case in (*_sizes(), *_unclosed(), *_questions())] + _recorded(data and os.path.join(data, "attack"), _TABLE) + [
         ("inside-" + name, case, right) for name, case, right in _recorded(data and os.path.join(data, "inside"), _TABLE_INSIDE)]
 
 

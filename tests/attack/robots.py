@@ -8,7 +8,7 @@ import meshes
 import scenes
 import xml_tree
 from geometry import IDENTITY, Mesh, Shape, apply, compose, determinant, roll_pitch_yaw, rotation
-from strict import Invalid, demand, number, numbers
+from strict import Invalid, Unknown, demand, number, numbers
 
 # Attributes and children that decide where a body is. What is nearly one of them must not be passed over.
 _attributes = {"origin": "xyz rpy", "box": "size", "sphere": "radius", "cylinder": "radius length", "capsule": "radius length",
@@ -70,8 +70,10 @@ def load_mesh(name, files):
     data = files.get(name.removeprefix("file://").removeprefix("./"))
     demand(data is not None, f"there is no {name[:40]!r}")
     ending = os.path.splitext(name)[1].lower()
-    if ending in (".dae", ".glb"):
-        return (scenes.read_dae if ending == ".dae" else scenes.read_glb)(data)
+    if ending == ".dae":
+        return scenes.read_dae(data)
+    if ending in (".glb", ".gltf"):  # y is up there, z in a robot
+        return [tuple((x, -z, y) for x, y, z in corners) for corners in scenes.read_gltf(data, ending)]
     demand(ending in meshes.readers, f"{name[:40]!r} is no mesh by its name")
     return meshes.triangles(meshes.readers[ending](data))
 
@@ -94,6 +96,8 @@ def _body(element, files):
 class Joint:
     def __init__(self, element):
         self.name, self.kind = element.get("name"), element.get("type")
+        if self.kind in ("planar", "floating"):
+            raise Unknown("a joint of several values")
         demand(self.kind in ("fixed", "revolute", "continuous", "prismatic"), f"a joint of type {self.kind[:20]!r}")
         self.origin = _origin(element)
         self.parent, self.child = element.need("parent").get("link"), element.need("child").get("link")
@@ -156,6 +160,8 @@ class Robot:
                 joint.leader = None
         self.above = {joint.child: joint for joint in self.joints}
         demand(len(self.above) == len(self.joints) == len(self.links) - 1, "the joints make no tree")
+        if any(j.parent == "world" for j in self.joints):
+            raise Unknown("the link that every simulator has")
         demand(all(j.parent in self.links and j.child in self.links for j in self.joints), "a joint of an unknown link")
         for name in self.links:
             for _ in self.links:
@@ -177,6 +183,8 @@ class Robot:
         demand(joint.kind != "fixed", "a mimic of a fixed joint")
         value = factor * self.value(joint, given) + offset
         demand(math.isfinite(value), "a mimic that is not finite")
+        if abs(value) > 1000 or abs(offset) > 1000:
+            raise Unknown("a mimic that may be too far to be known")
         return value
 
     def check(self, given, ignore_limits):

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strict readers of meshes with a scene graph, COLLADA and binary glTF: each gives triangles as they stand in the scene."""
 
+import base64
 import json
 import math
+import re
 import struct
 
 import xml_tree
@@ -71,6 +73,8 @@ class _Collada:
         demand(whole(array.get("count")) == len(values), "a float_array of another count")
         count, stride = whole(accessor.get("count")), whole(accessor.attributes.get("stride", "1"), 1)
         offset = whole(accessor.attributes.get("offset", "0"))
+        if count == len(values) > 3:
+            raise Unknown("an accessor that counts floats")
         demand(offset + count * stride <= len(values), "an accessor beyond its array")
         names = [p.attributes.get("name") for p in accessor.all("param")]
         if names != ["X", "Y", "Z"] or any(p.attributes.get("type", "float") != "float" for p in accessor.all("param")):
@@ -200,8 +204,8 @@ def _refuse_constant(word):
 
 
 class _Gltf:
-    def __init__(self, data):
-        text, self.binary = split_glb(data)
+    def __init__(self, data, ending):
+        text, self.binary = split_glb(data) if ending == ".glb" else (data, None)
         try:
             self.top = json.loads(text.decode("utf-8"), object_pairs_hook=_once, parse_constant=_refuse_constant)
         except RecursionError as error:
@@ -233,24 +237,31 @@ class _Gltf:
         accessor = self.item("accessors", index)
         if "sparse" in accessor or "bufferView" not in accessor:
             raise Unknown("a sparse accessor")
+        if accessor.get("normalized") or "KHR_mesh_quantization" in str(self.top.get("extensionsUsed")):
+            raise Unknown("numbers of another scale")
         component, shape = accessor.get("componentType"), accessor.get("type")
         demand(isinstance(component, int) and isinstance(shape, str) and (component, shape) in kinds, f"an accessor of {component!r:.20} {shape!r:.20}")
         letter, width = kinds[component, shape]
         size = struct.calcsize(letter)
         view = self.item("bufferViews", accessor["bufferView"])
         buffer = self.item("buffers", view.get("buffer"))
+        held, binary = self.count(buffer, "byteLength", low=1), self.binary
         if "uri" in buffer:
-            raise Unknown("a buffer elsewhere")
-        demand(view["buffer"] == 0 and self.binary is not None, "a buffer that is not there")
-        held = self.count(buffer, "byteLength", low=1)
-        demand(held <= len(self.binary) <= held + 3, "a buffer of another length")
+            match = re.fullmatch(r"data:[^,]*;base64,([A-Za-z0-9+/]*={0,2})", buffer["uri"]) if isinstance(buffer["uri"], str) else None
+            if match is None or len(match[1]) % 4 != 0:
+                raise Unknown("a buffer elsewhere, or data in another form")
+            binary = base64.b64decode(match[1])
+            demand(held <= len(binary), "a buffer of another length")
+        else:
+            demand(view["buffer"] == 0 and binary is not None, "a buffer that is not there")
+            demand(held <= len(binary) <= held + 3, "a buffer of another length")
         begin, length = self.count(view, "byteOffset", 0), self.count(view, "byteLength", low=1)
         demand(begin + length <= held, "a view beyond its buffer")
         count, at = self.count(accessor, "count", low=1), self.count(accessor, "byteOffset", 0)
         stride = self.count(view, "byteStride", size * width, 1)
         demand(stride >= size * width and stride % size == 0 and (begin + at) % size == 0, "a wrong stride or offset")
         demand(at + stride * (count - 1) + size * width <= length, "an accessor beyond its view")
-        return [struct.unpack_from(f"<{width}{letter}", self.binary, begin + at + i * stride) for i in range(count)]
+        return [struct.unpack_from(f"<{width}{letter}", binary, begin + at + i * stride) for i in range(count)]
 
     def mesh(self, index):
         mesh = self.item("meshes", index)
@@ -325,5 +336,5 @@ class _Gltf:
         return self.made
 
 
-def read_glb(data):
-    return _Gltf(data).read()
+def read_gltf(data, ending):
+    return _Gltf(data, ending).read()

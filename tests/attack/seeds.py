@@ -84,6 +84,7 @@ def _mesh_cases():
             ("off", "m.off", w.off(mesh, "COFF", (255, 0, 7, 255), (0.5, 0, 1))), ("off", "m.off", w.off(quads, "NOFF", (0, 0, 1), (3,))),
             ("ply mesh ascii", "m.ply", w.ply_mesh(quads)), ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_little_endian")),
             ("ply mesh binary", "m.ply", w.ply_mesh(mesh, "binary_big_endian")), ("dae", "m.dae", w.dae(mesh)), ("glb", "m.glb", w.glb(mesh)),
+            ("gltf", "m.gltf", w.gltf(mesh)),
             ("ply mesh ascii", "m.ply", w.ply_strips()), ("ply mesh binary", "m.ply", w.ply_strips("binary_little_endian"))]
     mark, assets = b"\xef\xbb\xbf", b'<asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>'
     named = w.obj(quads).replace(b"vn 0 0 1", b"# from C:\\\nusemtl a\\\nvn 0 \\\n0 1\nf 1 2", 1)
@@ -207,7 +208,7 @@ def _file_cases():
 
 def _data_cases(folder):
     """Small files of real tools, where they are."""
-    endings = {".stl": "stl", ".obj": "obj", ".off": "off", ".ply": "ply mesh", ".dae": "dae", ".glb": "glb", ".pcd": "pcd"}
+    endings = {".stl": "stl", ".obj": "obj", ".off": "off", ".ply": "ply mesh", ".dae": "dae", ".glb": "glb", ".gltf": "gltf", ".pcd": "pcd"}
     for file in sorted(pathlib.Path(folder).glob("*/*/*")):
         ending = file.suffix.lower()
         if ending not in endings or not file.is_file() or file.stat().st_size > 12_000 or "malformed" in file.parts:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes small undamaged files of every format that the command reads."""
 
+import base64
 import json
 import struct
 import zlib
@@ -32,7 +33,7 @@ def stl_text(mesh):
 
 
 def stl_binary(mesh):
-    data = b"made by scripts/attack".ljust(80) + struct.pack("<I", len(mesh[1]))
+    data = b"made by tests/attack/attack".ljust(80) + struct.pack("<I", len(mesh[1]))
     for face in mesh[1]:
         data += struct.pack("<12fH", 0, 0, 0, *(c for i in face for c in mesh[0][i]), 0)
     return data
@@ -117,6 +118,16 @@ def glb(mesh):
         "buffers": [{"byteLength": len(indices) + len(places)}],
     }
     return pack_glb(json.dumps(top).encode(), indices + places)
+
+
+def gltf(mesh):
+    """The same as text, with its numbers in a data URI."""
+    whole = glb(mesh)
+    size = struct.unpack_from("<I", whole, 12)[0]
+    top = json.loads(whole[20:20 + size])
+    data = whole[28 + size:][:top["buffers"][0]["byteLength"]]
+    top["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    return json.dumps(top).encode()
 
 
 def xyz(points):

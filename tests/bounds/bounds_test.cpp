@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A search, at random and uphill, for a bound that is above the truth, and what such searches have found.
-// scripts/search-bounds takes far more cases, by two compilers and with and without fused operations.
+// tests/bounds/search-bounds takes far more cases, by two compilers and with and without fused operations.
 #include "bounds/rows.hpp"
 #include "support/catch.hpp"
 #include "support/random.hpp"

@@ -4,7 +4,7 @@
 
 #include "bounds/laws.hpp"
 
-#include <clearance/scan/capsule_tiles.hpp>
+#include <clearance/scan/tile_scan.hpp>
 #include <clearance/scan/yardstick.hpp>
 
 namespace bounds {

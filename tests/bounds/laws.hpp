@@ -6,8 +6,8 @@
 #include "bounds/climb.hpp"
 #include "reference/exact.hpp"
 
-#include <clearance/frame/bracket.hpp>
-#include <clearance/frame/root_test.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/frames/root_test.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
 
@@ -379,7 +379,7 @@ struct bracket_law {
                          underflow;
     room r;
     if (!(error < std::numeric_limits<double>::infinity())) return r;
-    r.add((exact - clearance::minimum::certain_distance(computed, 0, frame.error)) / scale, 0);
+    r.add((exact - clearance::frames::certain_distance(computed, 0, frame.error)) / scale, 0);
     r.add((double(computed) + error - exact) / scale, 1);
     r.add(units_until(computed, scale,
                       [&](real reach) { return clearance::frames::may_reach(place.around, reach, p - frame.origin); }),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// search CASES [SEED] [PART]: prints a line for each search whose name contains PART. Built by scripts/search-bounds.
+// search CASES [SEED] [PART]: prints a line for each search whose name contains PART. Built by
+// tests/bounds/search-bounds.
 #include "bounds/rows.hpp"
 
 #include <cstdlib>

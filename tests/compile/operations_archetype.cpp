@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The least that a point source, an answer, a tally, a question and a part must offer; and a foreign backend.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/collect.hpp>
@@ -52,8 +52,8 @@ struct least_question {
     clearance::point_counts* counts;
   };
   template <class Asked>
-  out room(const Asked& a) const {
-    return {a.template room<int>(1), a.template room<clearance::point_counts>(1)};
+  out space(const Asked& a) const {
+    return {a.template space<int>(1), a.template space<clearance::point_counts>(1)};
   }
   template <class Asked>
   least_answer prepare(const Asked&, const out& to) const {

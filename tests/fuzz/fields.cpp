@@ -4,7 +4,7 @@
 
 #include "fuzz/fuzz.hpp"
 
-#include <clearance/io/fields_file.hpp>
+#include <clearance/io/field_cache.hpp>
 #include <clearance/usual_models.hpp>
 
 namespace fields_target {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// One program holds all targets; `--target=NAME` chooses. scripts/fuzz builds and runs it.
+// One program holds all targets; `--target=NAME` chooses. tests/fuzz/fuzz builds and runs it.
 
 #include <clearance/io/cloud.hpp>
 #include <clearance/io/error.hpp>

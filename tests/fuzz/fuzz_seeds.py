@@ -4,6 +4,7 @@ bytes. And dictionaries: the words of a target's seeds, and the numbers with whi
 
 import pathlib
 import re
+import struct
 import sys
 
 tests = pathlib.Path(__file__).resolve().parent.parent
@@ -14,7 +15,7 @@ import seeds  # noqa: E402
 _FORMS = {
     "pcd": ("pcd ascii", "pcd binary", "pcd compressed"), "ply_cloud": ("ply cloud ascii", "ply cloud binary"), "xyz": ("xyz",),
     "obj": ("obj",), "off": ("off",), "stl": ("stl ascii", "stl binary"), "ply_mesh": ("ply mesh ascii", "ply mesh binary"), "dae": ("dae",),
-    "glb": ("glb",), "png": ("png",), "ist": ("ist",), "spheres_csv": ("csv",), "spheres_yaml": ("yaml",), "urdf": ("urdf",),
+    "glb": ("glb",), "gltf": ("gltf",), "png": ("png",), "ist": ("ist",), "spheres_csv": ("csv",), "spheres_yaml": ("yaml",), "urdf": ("urdf",),
 }
 _MORE_WORDS = {  # that no seed has
     "pcd": ["COLUMNS", "binary_compressed", "VERSION .5", "TYPE I", "COUNT 2"], "ply_cloud": ["property list", "double", "obj_info", "int8", "float64"],
@@ -50,6 +51,14 @@ def seeds_of(target):
         glb = cases["glb"][0]
         data = glb.files[glb.target]
         made += [data[20:20 + int.from_bytes(data[12:16], "little")], *_documents('{"asset')]
+    if target == "compressed_depth":
+        png = cases["png"][0]
+        head = bytes(4) + struct.pack("<ff", 10100.0, -1.0)
+        made += [words + b"\n" + (b"" if b"png comp" in words else head) + png.files[png.target]
+                 for words in (b"16UC1; compressedDepth", b"32FC1; compressedDepth png", b"mono16; png compressed ")]
+        # Of 4 x 2 pixels: a run of 2 zeros, 3 differences of 1, 2 zeros, 1 difference of 1000.
+        rvl = struct.pack("<IIII", 4, 2, 0x23222218, 0xAF300000)
+        made += [words + b"\n" + head + rvl for words in (b"16UC1; compressedDepth rvl", b"32FC1; compressedDepth rvl")]
     if target == "fields":  # damages of five bytes, after one that says whether the checksum fits
         places = (12, 30, 40, 50, 63, 250)
         made += [b"\1"] + [bytes([k, kind, 0, at, 1, 0]) for k in (0, 1) for kind in range(6) for at in places]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads one file and says what that took: `read_file mesh|cloud|image|spheres|robot FILE`. For scripts/worst-files.
+// Reads one file and says what that took: `read_file mesh|cloud|image|spheres|robot FILE`. For
+// tests/attack/worst-files.
 
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/mesh.hpp>

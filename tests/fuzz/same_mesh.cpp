@@ -93,8 +93,8 @@ std::string stl(const polygons& mesh, bool text) {
 
 std::string glb(const polygons& mesh) {
   std::string places, indices;
-  for (const auto& v : mesh.vertices)
-    for (const double c : v) places += fuzz::raw(float(c));
+  for (const auto& v : mesh.vertices)  // y is up there
+    for (const double c : {v.x(), v.z(), -v.y()}) places += fuzz::raw(float(c));
   for (const auto& f : mesh.faces)
     for (const auto v : f) indices += fuzz::raw(v);
   const auto s = [](std::size_t value) { return std::to_string(value); };

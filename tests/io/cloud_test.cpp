@@ -67,7 +67,10 @@ TEST_CASE("an XYZ file is refused with the number of its line") {
     contains(refused(".xyz", "1 2 3" + columns + "\n\n4 5 6" + columns + " 7 8 9" + columns + "\n"), ":3: a point of ");
   contains(refused(".xyz", ""), "is empty (0 bytes)");
   CHECK(read(".xyz", "# nothing\n\n").points.empty());
-  contains(refused(".las", "1 2 3\n"), "is no point cloud by its name");
+  for (const char* end : {".las", ".LAZ", ".copc.laz"}) {
+    contains(refused(end, "LASF"), "is no point cloud by its name");
+    contains(refused(end, "LASF"), "LAS and LAZ by the Python package");
+  }
 }
 
 TEST_CASE("floats for a query are exact where floats can be, and say what they lost where not") {
@@ -95,6 +98,28 @@ TEST_CASE("floats for a query are exact where floats can be, and say what they l
   }
   CHECK(io::make_cloud("", {{0.5, 0.25, 3}}, 1, 1).relative_to({0, 0, 0}).off.relative == 0);
   CHECK(io::make_cloud("", {{0.1, 0.25, 3}}, 1, 1).relative_to({0, 0, 0}).off.relative > 0);
+}
+
+TEST_CASE("many configurations of a robot that stands far away have the floats that each has alone") {
+  const io::cloud c = io::make_cloud("", {{4e6, 5e5, 0.1}, {4e6 + 0.3, 5e5, 0.7}}, 2, 1);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> off(-2, 2);
+  Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
+  camera.rotate(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  std::vector<std::vector<Eigen::Isometry3d>> each(20);
+  std::vector<Eigen::Isometry3d> all;
+  for (auto& poses : each) {
+    poses.assign(3, camera * Eigen::Translation3d(4e6, 5e5, 0));
+    for (std::size_t k = 1; k < 3; ++k)
+      poses[k] = poses[k] * Eigen::Translation3d(off(random), off(random), off(random));
+    all.insert(all.end(), poses.begin(), poses.end());
+  }
+  const io::float_cloud together = c.near(all, camera);
+  CHECK(!together.origin.isZero(0));
+  for (const auto& poses : each) {
+    const io::float_cloud alone = c.near(poses, camera);
+    CHECK((alone.origin == together.origin && alone.points == together.points));
+  }
 }
 
 TEST_CASE("the points of a PLY file come in the file's order, from text and from bytes") {

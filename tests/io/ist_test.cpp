@@ -3,7 +3,7 @@
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/io/ist.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>

@@ -3,8 +3,8 @@
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
+#include <clearance/io/cloud_file.hpp>
 #include <clearance/io/mesh_ply.hpp>
-#include <clearance/io/ply.hpp>
 
 #include <array>
 #include <cstring>

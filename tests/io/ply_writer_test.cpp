@@ -2,9 +2,9 @@
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/io/distance_colour.hpp>
-#include <clearance/io/ply.hpp>
+#include <clearance/io/cloud_file.hpp>
 #include <clearance/io/ply_writer.hpp>
+#include <clearance/io/scene.hpp>
 
 #include <cstring>
 

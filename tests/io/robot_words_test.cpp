@@ -146,6 +146,16 @@ TEST_CASE("what may be a misspelt word that matters is refused, wherever it stan
     refused("link", "<" + known + "><collision>" + box + "</collision></" + known + ">");
 }
 
+TEST_CASE("a word of sizes is refused wherever it stands, as attribute and as element") {
+  const words_robot read;
+  for (const std::string& at : places)
+    for (const std::string word : {"scale", "Scale", "scaling", "unit", "units", "offset", "u:scale"}) {
+      INFO(word << " in " << at);
+      check_sentence(read.refusal(with(at, " " + word + "=\"0.001\"")), (read.folder.path / "r.urdf").string());
+      CHECK_FALSE(read.refusal(with(at, "<" + word + " value=\"2\"/>")).empty());
+    }
+}
+
 TEST_CASE("xacro is known by its namespace, whatever the prefix") {
   const words_robot read;
   const std::string link = "<link name=\"a\"><collision>" + box + "</collision></link>";

@@ -100,7 +100,7 @@ TEST_CASE("the mesh of a scene file is the mesh that went in, turned so that y i
   world.bodies.push_back({.name = "grouped", .mesh = io::icosphere(0), .group = "g"});
   const scratch_file file(".glb");
   io::save_scene(world, file.path);
-  const triangle_mesh read = io::load_mesh(file.path);
+  const triangle_mesh read = io::load_mesh(file.path, {}, io::gltf_axis::z);
   REQUIRE(read.triangles.size() == 100);
   for (std::size_t t = 0; t < 80; ++t)
     for (std::size_t k = 0; k < 3; ++k) {

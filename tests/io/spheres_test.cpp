@@ -4,9 +4,8 @@
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
-#include <clearance/io/certify.hpp>
-#include <clearance/io/spheres_csv.hpp>
-#include <clearance/io/spheres_yaml.hpp>
+#include <clearance/io/robot_bodies.hpp>
+#include <clearance/io/spheres_file.hpp>
 #include <clearance/packing/pack.hpp>
 
 #include <bit>
@@ -140,6 +139,56 @@ TEST_CASE("cuRobo's files are read as its users have them") {
                             "robot_cfg:\n  kinematics:\n    base_link: x\n    collision_spheres:\n      link_a: "
                             "[{center: [0, 0.1, -0.2], radius: 0.03}, {center: [1,2,3], radius: 0.05}]\n");
   check(nested.path);
+}
+
+TEST_CASE("a word of YAML that may change the spheres is refused with its line, any other noted, and a buffer added") {
+  const auto text = [](const std::string& top, const std::string& beside, const std::string& within) {
+    return top + "robot_cfg:\n  kinematics:\n" + (beside.empty() ? "" : "    " + beside + "\n") +
+           "    collision_spheres:\n      a:\n        - center: [1, 2, 3]\n          radius: 0.5\n" +
+           (within.empty() ? "" : "          " + within + "\n");
+  };
+  const auto load = [&](const std::string& yaml, std::vector<std::string>& notes) {
+    const scratch_file file(".yml", yaml);
+    return io::load_spheres(file.path, {}, &notes);
+  };
+  std::vector<std::string> notes;
+  const auto plain = load(text("", "", ""), notes);
+  CHECK(notes.empty());
+  for (const std::string word : {"offset: 0.1", "scale: 0.001", "units: mm", "unit: m", "radius_scale: 2",
+                                 "padding: 0.1", "pose: [0, 0, 0]", "Transform: x", "sphere_offset: 1",
+                                 "collision_sphere_bufer: 0.1", "centre: [0, 0, 0]", "radii: 3", "frame: world"}) {
+    INFO(word);
+    const bool of_sphere = word.starts_with("centre") || word.starts_with("radii");
+    if (!of_sphere) {
+      begins(yaml_refusal(text(word + "\n", "", "")), ":1: has the key");
+      begins(yaml_refusal(text("", word, "")), ":3: has the key");
+    }
+    if (!word.starts_with("collision"))
+      begins(yaml_refusal(text("", "", word)), ":7: sphere 0 of link \"a\" has the key");
+  }
+  for (const std::string word : {"colour: red", "author: me", "name: a"}) {
+    INFO(word);
+    for (const std::string& yaml : {text(word + "\n", "", ""), text("", word, ""), text("", "", word)}) {
+      notes.clear();
+      CHECK(same(load(yaml, notes)[0].spheres.spheres, plain[0].spheres.spheres));
+      REQUIRE(notes.size() == 1);
+      CHECK(notes[0].ends_with("which is not known, and is passed over"));
+    }
+  }
+  notes.clear();
+  CHECK(load(text("", "self_collision_buffer: {a: 1}\n    collision_sphere_buffer: 0.0", ""), notes)[0]
+            .spheres.spheres[0]
+            .radius == 0.5f);
+  CHECK(notes.empty());
+  for (const std::string buffer : {"0.25", "{a: 0.25, b: 1}"}) {
+    notes.clear();
+    CHECK(load(text("", "collision_sphere_buffer: " + buffer, ""), notes)[0].spheres.spheres[0].radius == 0.75f);
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0] == "has a collision_sphere_buffer, which is added to the radii");
+  }
+  CHECK_FALSE(yaml_refusal(text("", "collision_sphere_buffer: -0.5", "")).empty());
+  CHECK_FALSE(yaml_refusal(text("", "collision_sphere_buffer: thick", "")).empty());
+  CHECK_FALSE(yaml_refusal(text("", "collision_sphere_buffer: {a: [1]}", "")).empty());
 }
 
 TEST_CASE("YAML that holds no spheres is refused with its line") {

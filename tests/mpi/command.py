@@ -136,12 +136,19 @@ with tempfile.TemporaryDirectory() as name:
     ends([f"rank 1 of 3: {why}", why, f"rank 1 of 3: {why}"], (1, good), (1, triangles + ["--cloud", damaged]), (1, good))
     nowhere = str(folder / "nowhere.xyz")
     ends([f"{nowhere}: there is no such file", f"rank 0 of 2: {nowhere}: there is no such file"], (1, triangles + ["--cloud", nowhere]), (1, good))
-    ends(["rank 1 asks about other poses than rank 0"] * 2, (1, good), (1, good + ["--joint", "slide=0.1"]))
+    other = written("other.urdf", robot.replace('0.2 0.2 0.2', '0.2 0.2 0.21').encode())
+
+    def differ(what):
+        return [f"rank 1 has another {what} than rank 0"] * 2
+
+    ends(differ("--joint"), (1, good), (1, good + ["--joint", "slide=0.1"]))
     ends(["rank 1 asks about 2 clouds, rank 0 about 1"] * 2, (1, good), (1, good + ["--cloud", one]))
-    differ = "rank 1 has other questions than rank 0, or clouds of other sizes"
-    ends([differ] * 2, (1, good), (1, good + ["--zones", "0.1"]))
-    ends([differ] * 2, (1, good + ["--zones", "0.1,0.2"]), (1, good + ["--zones", "0.1"]))
-    ends([differ] * 2, (1, good), (1, triangles + ["--cloud", far]))
+    ends(differ("--zones"), (1, good), (1, good + ["--zones", "0.1"]))
+    ends(differ("--zones"), (1, good + ["--zones", "0.1,0.2"]), (1, good + ["--zones", "0.1"]))
+    ends(differ("cloud 0"), (1, good), (1, triangles + ["--cloud", far]))
+    for option in (["--range", "0.1,9"], ["--camera-pose", "0.01,0,0,0,0,0,1"], ["--base-pose", "0,0,0.01,0,0,0,1"], ["--check", "0.1"], ["--zero-is-missing"]):
+        ends(differ(option[0]), (1, good), (1, good + option))
+    ends(differ("robot"), (1, good), (1, [other if word == triangles[triangles.index("--robot") + 1] else word for word in good]))
     unwritable = str(folder / "no" / "folder.glb")
     why = plain(*good, "--scene", unwritable).stderr.removeprefix("clearance: ").rstrip("\n")
     assert unwritable in why, why

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What tests include and no mutant changes: scripts/mutate compiles it once.
+// What tests include and no mutant changes: tests/mutate/mutate compiles it once.
 #include "support/catch.hpp"
 
 #include <Eigen/Core>

@@ -25,7 +25,7 @@ def expressions(folder, mutants):
     try:
         from clang import cindex
     except ImportError:
-        sys.exit("scripts/mutate needs clang's Python module: apt-get install python3-clang-19")
+        sys.exit("tests/mutate/mutate needs clang's Python module: apt-get install python3-clang-19")
     by_file = collections.defaultdict(list)
     for mutant in mutants:
         by_file[str(folder / "clearance" / mutant.header)].append(mutant)

@@ -2,7 +2,7 @@
 #include "support/laws.hpp"
 #include "support/same_result.hpp"
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/points/point_cloud2.hpp>
 #include <clearance/points/point_span.hpp>
@@ -147,6 +147,47 @@ TEST_CASE("A cloud without a message is read likewise, with a filter; an empty o
   }
 }
 
+TEST_CASE("A row_step that cannot be is not read where the rows lie without gaps: 0, another cloud's, all bytes") {
+  dice d(5);
+  verdict v;
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::uint32_t height = 2 + d.below(5);
+    const auto points = some_points(d, height * (1 + d.below(30)));
+    message m = packed<float>(d, points, height, 0);
+    const std::uint32_t own = m.row_step, all = std::uint32_t(m.data.size());
+    for (const std::uint32_t said : {0u, 1u, own - 1, own + 1, 2 * own, all, all + 7, 0xffffffffu}) {
+      m.row_step = said;
+      const auto view = point_cloud2_view(m);
+      v.require(view.size() == points.size() && view.bytes().size() <= m.data.size(), "another size with", said);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        v.require(view[i].valid() == clearance::is_finite(points[i]) &&
+                      (!view[i].valid() || same_bytes(view[i].position, points[i])),
+                  "point", i, " differs");
+    }
+  }
+}
+
+TEST_CASE("Rows of a message have the one step that fits, or none") {
+  verdict v;
+  for (std::uint64_t rows = 0; rows < 6; ++rows)
+    for (std::uint64_t bytes = 0; bytes < 6; ++bytes)
+      for (std::uint64_t held = 0; held < 40; ++held)
+        for (const std::uint64_t said : {0ull, 1ull, 2ull, 3ull, 5ull, 6ull, 9ull, 30ull, ~0ull}) {
+          const auto fits = [&](std::uint64_t step) {
+            return rows == 0 || bytes == 0 || (step >= bytes && step < 100 && (rows - 1) * step + bytes <= held);
+          };
+          const auto step = clearance::row_step(rows, bytes, said, held);
+          const bool tight = rows * bytes == held;
+          if (rows <= 1 || bytes == 0)
+            v.require(step.has_value() == fits(bytes) && step.value_or(bytes) == bytes, "one row");
+          else if (fits(said))
+            v.require(step == said, "what is said fits");
+          else
+            v.require(step.has_value() == tight && step.value_or(bytes) == bytes, "what is said does not fit");
+        }
+  CHECK(clearance::row_step(~0ull, ~0ull, ~0ull, 100) == std::nullopt);
+}
+
 TEST_CASE("A PointCloud2 that contradicts itself is refused in a sentence") {
   dice d(4);
   const auto points = d.points(12, 1);
@@ -182,11 +223,13 @@ TEST_CASE("A PointCloud2 that contradicts itself is refused in a sentence") {
         std::string::npos);
   CHECK(says([](message& m) { m.point_step = 0; }).find("beyond its point_step of 0 bytes") != std::string::npos);
   CHECK(says([](message& m) { m.row_step = 63; }) ==
-        "clearance: the cloud has a row_step of 63 bytes, too few for 4 points of 16 bytes");
+        "clearance: the cloud says 3 x 4 points of 16 bytes, in rows of 63 bytes (row_step), but holds 204 bytes");
   CHECK(says([](message& m) { m.data.pop_back(); }) ==
-        "clearance: the cloud says 3 x 4 points of 16 bytes, but holds 203 bytes");
+        "clearance: the cloud says 3 x 4 points of 16 bytes, in rows of 70 bytes (row_step), but holds 203 bytes");
+  CHECK(says([](message& m) { m.height = 1, m.data.resize(63); }) ==
+        "clearance: the cloud says 1 x 4 points of 16 bytes, but holds 63 bytes");
   CHECK(says([](message& m) { m.height = 0xffffffff; }).find("says 4294967295 x 4 points") != std::string::npos);
-  CHECK(says([](message& m) { m.height = m.width = m.row_step = m.point_step = 0xffffffff; }).find("too few") !=
+  CHECK(says([](message& m) { m.height = m.width = m.row_step = m.point_step = 0xffffffff; }).find("but holds") !=
         std::string::npos);
 }
 

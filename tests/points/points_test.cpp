@@ -304,4 +304,18 @@ TEST_CASE("A table of a pinhole's rays is that pinhole, bit for bit; a bent ray 
   CHECK(same(a[101], b[101]));
 }
 
+TEST_CASE("The half diagonal of a pixel is known of a single row and column, too") {
+  const auto rays = [](std::size_t width, std::size_t height) {
+    std::vector<clearance::ray> all;
+    for (std::size_t v = 0; v < height; ++v)
+      for (std::size_t u = 0; u < width; ++u) all.push_back({real(u) / 100 - 0.1f, real(v) / 100 - 0.1f});
+    return all;
+  };
+  const double expected = std::hypot(0.01, 0.01) / 2;
+  for (const std::size_t width : {1, 2, 7})
+    for (const std::size_t height : {1, 2, 5})
+      CHECK(clearance::half_pixel_of(rays(width, height).data(), width, height) ==
+            Approx(width == 1 && height == 1 ? 0.0 : expected).epsilon(1e-5));
+}
+
 }  // namespace points_test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // real FOLDER POINTS SEED SHARE OF SECONDS: asks about so many points of all robots and meshes of a folder, of which
-// this process takes every OF-th from SHARE on; after SECONDS it begins no more. scripts/reference builds it and adds
-// up what it prints: a line for each object (its group, points, parts, how many of them are clean solids) and for each
-// question.
+// this process takes every OF-th from SHARE on; after SECONDS it begins no more. tests/reference/reference builds it
+// and adds up what it prints: a line for each object (its group, points, parts, how many of them are clean solids) and
+// for each question.
 #include "reference/objects.hpp"
 
 #include <clearance/io/mesh.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every question against an independent reference, on made solids; scripts/reference asks about real ones.
+// Every question against an independent reference, on made solids; tests/reference/reference asks about real ones.
 #include "reference/objects.hpp"
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"

@@ -23,7 +23,7 @@ struct bodies_of_truth {
   /// surface counts too, so that it is at most the depth. By brute force and solid angles, which share nothing with the
   /// library.
   double signed_distance(const Vector3d& at) const {
-    double least = std::numeric_limits<double>::infinity(), deepest = 0;
+    double least = std::numeric_limits<double>::infinity(), deepest = -1;  // none
     for (const auto& body : bodies) {
       double angle = 0, nearest = std::numeric_limits<double>::infinity();
       for (const auto& t : body.triangles) {
@@ -39,7 +39,15 @@ struct bodies_of_truth {
       else
         least = std::min(least, nearest);
     }
-    return deepest > 0 ? -deepest : least;
+    return deepest >= 0 ? -deepest : least;
+  }
+  /// Metres to the nearest body's surface.
+  double to_surface(const Vector3d& at) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& body : bodies)
+      for (const auto& t : body.triangles)
+        nearest = std::min(nearest, to_triangle(at, body.vertices[t[0]], body.vertices[t[1]], body.vertices[t[2]]));
+    return nearest;
   }
 
  private:
@@ -157,6 +165,12 @@ struct damages {
     const auto& u = s.mesh.triangles[d.below(edges)];
     const Vector3d middle = (s.mesh.vertices[t[0]] + s.mesh.vertices[u[1]]) / 2;
     if (s.truth.signed_distance(middle) >= 0) return;
+    // Where the solid is not convex, or is two bodies, a wall may leave it; then that is a surface, and no inner wall.
+    constexpr int steps = 24;
+    const Vector3d a = s.mesh.vertices[t[0]] - middle, b = s.mesh.vertices[t[1]] - middle;
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; i + j <= steps; ++j)
+        if (s.truth.signed_distance(middle + (i * a + j * b) / steps) > s.damage + 1e-9 * s.size()) return;
     const auto n = std::uint32_t(s.mesh.vertices.size());
     s.mesh.vertices.push_back(middle);
     s.mesh.triangles.push_back({t[0], t[1], n});
@@ -172,6 +186,72 @@ struct damages {
       s.mesh.triangles[i] = {t[0], n, t[2]};
       s.mesh.triangles.push_back({n, t[1], t[2]});
     }
+  }
+  /// Two halves of the surface meet along a seam that each of them divides in its own way: straight on a box, bent on
+  /// what is round. Corners in the seam miss one another by up to some width; along the halves' faces, or anywhere, so
+  /// that loops of the rim cross themselves; sometimes no corner is common, and a loop is as long as the seam.
+  void seam(damaged_solid& s) const {
+    if (!s.mesh.shapes.empty()) return;  // triangles' numbers will change
+    const double width = d.below(4) == 0 ? 0 : s.size() * std::pow(10, d.number(-10, -3));
+    const bool in_face = d.below(2) == 0, apart = width > 0 && d.below(2) == 0;
+    Eigen::AlignedBox3d box;
+    for (const auto& v : s.mesh.vertices) box.extend(v);
+    const clearance::vec3 n = d.direction();
+    const Vector3d normal(n.x, n.y, n.z), origin = box.center() + d.number(-0.3f, 0.3f) * box.sizes();
+    const auto beyond = [&](const std::array<std::uint32_t, 3>& t) {
+      const auto& v = s.mesh.vertices;
+      return normal.dot((v[t[0]] + v[t[1]] + v[t[2]]) / 3 - origin) > 0;
+    };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, unsigned>
+        sides;  // bit 0: of a triangle here, bit 1: of one beyond
+    for (const auto& t : s.mesh.triangles)
+      for (int k = 0; k < 3; ++k) sides[std::minmax(t[k], t[(k + 1) % 3])] |= beyond(t) ? 2 : 1;
+    const auto off = [&](const Vector3d& along, const Vector3d& face) {
+      const clearance::vec3 way = d.direction();
+      Vector3d out(way.x, way.y, way.z);
+      if (in_face) out = along.cross(face);
+      if (!(out.norm() > 0)) return Vector3d(0, 0, 0);
+      return Vector3d(d.number(-1, 1) * width / out.norm() * out);
+    };
+    std::map<std::uint32_t, std::uint32_t> twin;  // a corner of the seam, and the one that what is beyond has for it
+    clearance::triangle_mesh made{s.mesh.vertices, {}};
+    for (std::size_t i = 0; i < s.mesh.triangles.size(); ++i) {
+      auto t = s.mesh.triangles[i];
+      const bool there = beyond(t);
+      const auto in_seam = [&](int k) { return sides[std::minmax(t[k], t[(k + 1) % 3])] == 3; };
+      std::vector<std::uint32_t> ring;  // the triangle's corners, and those that divide its sides in the seam
+      const Vector3d face =
+          (s.mesh.vertices[t[1]] - s.mesh.vertices[t[0]]).cross(s.mesh.vertices[t[2]] - s.mesh.vertices[t[0]]);
+      for (int k = 0; k < 3; ++k) {
+        ring.push_back(t[k]);
+        if (!in_seam(k)) continue;
+        const Vector3d a = s.mesh.vertices[t[k]], b = s.mesh.vertices[t[(k + 1) % 3]];
+        const unsigned cuts = unsigned(d.below(4));
+        for (unsigned c = 1; c <= cuts; ++c) {
+          ring.push_back(std::uint32_t(made.vertices.size()));
+          made.vertices.push_back(a + (c + d.number(-0.4f, 0.4f)) / (cuts + 1.0) * (b - a) + off(b - a, face));
+        }
+      }
+      if (there && apart)
+        for (auto& v : ring)
+          if (v < s.mesh.vertices.size() && touches_seam(sides, s.mesh, v)) {
+            const auto [at, fresh] = twin.try_emplace(v, std::uint32_t(made.vertices.size()));
+            if (fresh) made.vertices.push_back(s.mesh.vertices[v] + off(normal, face));
+            v = at->second;
+          }
+      // A fan from a corner that is not between two divided sides would have flat triangles: from the middle it has
+      // none.
+      if (ring.size() == 3) {
+        made.triangles.push_back({ring[0], ring[1], ring[2]});
+        continue;
+      }
+      const auto middle = std::uint32_t(made.vertices.size());
+      made.vertices.push_back((s.mesh.vertices[t[0]] + s.mesh.vertices[t[1]] + s.mesh.vertices[t[2]]) / 3);
+      for (std::size_t k = 0; k < ring.size(); ++k)
+        made.triangles.push_back({middle, ring[k], ring[(k + 1) % ring.size()]});
+    }
+    s.mesh = std::move(made);
+    s.damage += 2 * width;
   }
   /// Faces are cut into needles.
   void needles(damaged_solid& s) const {
@@ -228,6 +308,7 @@ struct damages {
   using kind = void (damages::*)(damaged_solid&) const;
   static constexpr std::pair<const char*, kind> all[] = {{"another body", &damages::another_body},
                                                          {"T-joints", &damages::t_joints},
+                                                         {"seam", &damages::seam},
                                                          {"needles", &damages::needles},
                                                          {"inner wall", &damages::inner_wall},
                                                          {"flipped", &damages::flipped},
@@ -239,6 +320,14 @@ struct damages {
                                                          {"another shape", &damages::another_shape}};
 
  private:
+  static bool touches_seam(const std::map<std::pair<std::uint32_t, std::uint32_t>, unsigned>& sides,
+                           const clearance::triangle_mesh& mesh, std::uint32_t v) {
+    return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
+      for (int k = 0; k < 3; ++k)
+        if ((t[k] == v || t[(k + 1) % 3] == v) && sides.at(std::minmax(t[k], t[(k + 1) % 3])) == 3) return true;
+      return false;
+    });
+  }
   static bool convex(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& e) {
     const Vector3d q[4] = {a, b, c, e};
     Vector3d normal = (c - a).cross(e - b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law of the inside: whatever is wrong with a mesh, a point deeper inside than the damage is never free, and one
 // farther outside is never in collision. CLEARANCE_INSIDE_RUNS sets the number of damaged solids to try
-// (scripts/inside-law).
+// (tests/solid/inside-law).
 #include "solid/damaged.hpp"
 #include "support/catch.hpp"
 #include "support/laws.hpp"
@@ -54,8 +54,11 @@ void law(const Part& part, const damaged_solid& s, const std::string& what, cons
     if (-truth > s.damage + rounding) v.require(r.state != clearance::state::free, what, p, says());
     if (truth > s.damage + rounding) v.require(r.state != clearance::state::collision, what, p, says());
     v.require(r.lower <= std::max(truth, 0.0) + s.damage + rounding, what, p, ": lower", r.lower, says());
+    // The other side: nothing that the damage does not excuse hangs between the point and the solid.
+    v.require(r.upper >= truth - s.damage - rounding, what, p, ": upper", r.upper, says());
     // An answer that is always "possible" would keep the law, and be of no use.
-    if (-truth > s.damage + unsure + rounding) ++all.inside, all.collision += r.state == clearance::state::collision;
+    if (-truth > s.damage + unsure + rounding && s.truth.to_surface(at) > s.damage + unsure + rounding)
+      ++all.inside, all.collision += r.state == clearance::state::collision;
     if (truth > s.damage + unsure + rounding) ++all.outside, all.free += r.state == clearance::state::free;
   }
 }

@@ -2,7 +2,7 @@
 #include "solid/damaged.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/backend/device.cuh>
+#include <clearance/backends/device.cuh>
 #include <clearance/solid/close_mesh.hpp>
 
 #include <random>

@@ -4,7 +4,7 @@
 
 #include "support/scenes.hpp"
 
-#include <clearance/frame/clouds.hpp>
+#include <clearance/frames/clouds.hpp>
 
 namespace testing {
 

@@ -23,7 +23,7 @@ clearance::part_distances brute_per_part(const scene<P>& s, const clouds& all, r
       if (!point.valid()) ++r.counts.dropped[int(point.dropped)];
     }
   }
-  r.points = row.size();
+  r.points = row.size(), r.parts = s.parts.size();
   for (std::size_t k = 0; k < s.parts.size(); ++k) r.distance.insert(r.distance.end(), row.begin(), row.end());
   for (std::uint32_t c = 0; c < all.size(); ++c)
     for_each_pair(s, all[c].source, all[c].pose, c, inside, [&](const clearance::pair_distance& pair) {
@@ -35,8 +35,9 @@ clearance::part_distances brute_per_part(const scene<P>& s, const clouds& all, r
 inline void require_same(const clearance::part_distances& found, const clearance::part_distances& expected, verdict& v,
                          const std::string& what) {
   const auto same = [](real a, real b) { return (a != a && b != b) || same_bits(a + 0.0f, b + 0.0f); };
-  v.require(found.points == expected.points && std::ranges::equal(found.distance, expected.distance, same), what,
-            ": some distance differs");
+  v.require(found.points == expected.points && found.parts == expected.parts &&
+                std::ranges::equal(found.distance, expected.distance, same),
+            what, ": some distance differs");
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
 

@@ -28,7 +28,7 @@ configurations configurations_of(const scene<P>& s, dice& d, std::size_t count =
 /// `one(poses)` is min_distance for one configuration.
 template <class One>
 void require_same(const clearance::min_distances_result& found, const configurations& poses, std::size_t parts,
-                  real d_max, One one, verdict& v, const std::string& what) {
+                  real d_max, One one, verdict& v, const std::string& what, double spread = 0) {
   v.require(found.of.size() * parts == poses.size(), what, ": another number of results");
   for (std::size_t c = 0; c < found.of.size() && (c + 1) * parts <= poses.size(); ++c) {
     const clearance::min_distance_result expected = one(std::span(poses).subspan(c * parts, parts)), &r = found.of[c];
@@ -43,9 +43,9 @@ void require_same(const clearance::min_distances_result& found, const configurat
               what, ", configuration", c, ": beyond d_max there is", r.distance);
     v.require(r.lower >= 0 && r.lower <= std::max(d_max, real(0)) && r.lower <= expected.lower, what, ", configuration",
               c, ": lower is", r.lower);
-    // The width of the bracket hardly depends on the distance.
-    v.require(r.lower >= expected.lower - (expected.distance - d_max) * 1.001f - 1e-6f * expected.distance, what,
-              ", configuration", c, ": lower is", r.lower, ", too little");
+    // The width of the bracket hardly depends on the distance. Beyond d_max the greatest tolerance is taken.
+    v.require(r.lower >= expected.lower - (expected.distance - d_max) * 1.001f - 1e-6f * expected.distance - spread,
+              what, ", configuration", c, ": lower is", r.lower, ", too little");
     v.require(r.state == (r.lower > 0 ? clearance::state::free : clearance::state::possible), what, ", configuration",
               c, ": another state");
     v.require(r.seen == expected.seen && r.valid == expected.valid &&

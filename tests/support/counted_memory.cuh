@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/backend/cuda_error.cuh>
+#include <clearance/backends/cuda_error.cuh>
 
 #include <algorithm>
 #include <memory_resource>

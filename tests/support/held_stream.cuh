@@ -2,7 +2,7 @@
 #pragma once
 // CUDA streams for tests, and a gate that holds them.
 
-#include <clearance/backend/cuda_error.cuh>
+#include <clearance/backends/cuda_error.cuh>
 
 #include <atomic>
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 
 #include <new>
 

@@ -2,7 +2,7 @@
 #pragma once
 // Are two results of any question the same, numbers by their bits?
 
-#include <clearance/query/fields.hpp>
+#include <clearance/query/serialise.hpp>
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/min_distance_supported.hpp>
 

@@ -209,7 +209,6 @@ TEST_CASE("joints are taken by order or by name, and refused with a sentence") {
   refuses(ask + " --joints 0.1,0.2", "the robot has 1 movable joints (slide), here are 2 values");
   refuses(ask + " --joints 2", "slide");
   refuses(ask + " --joint slide=2", "slide");
-  refuses(ask + " --joint echo=0", "echo");
   refuses(ask + " --joint mount=0", "mount");
   refuses(ask + " --joint nobody=0", "nobody");
   refuses(ask + " --joint slide", "\"slide\" is not of the form name=value");

@@ -25,7 +25,7 @@ TEST_CASE("what is wrong with zones and distances is one sentence that names the
   refuses(q.ask + " --nearest 0", "--nearest: \"0\" is not a whole number from 1");
   refuses(q.ask + " --nearest 1048577", "--nearest: \"1048577\" is not a whole number from 1 to 1048576");
   refuses(q.ask + " --nearest 3 --deadline 5",
-          "--deadline: is for the least distance alone, and cannot be mixed with --nearest");
+          "--deadline: cannot be mixed with --nearest: it is for the least distance alone");
   const scratch_file ply(".ply");
   for (const std::string value : {"0", "-1"})
     refuses(q.ask + " --distances " + ply.path + " --d-max " + value, "--d-max: must be above 0");
@@ -107,8 +107,7 @@ TEST_CASE("what is wrong with a deadline or with ranks is one sentence that name
           "--volume: cannot be aabb with --deadline, which has obb for --model triangles");
   for (const std::string other :
        {"--zones 0.1", "--distances x.ply", "--self-filter 0.1", "--min-support 3@0.1", "--nearest 2", "--gradient"})
-    refuses(q.ask + " --deadline 5 " + other, "--deadline: is for the least distance alone, and cannot be mixed with " +
-                                                  other.substr(0, other.find(' ')));
+    refuses(q.ask + " --deadline 5 " + other, "--deadline: cannot be mixed with " + other.substr(0, other.find(' ')));
   refuses("plan --robot x --cloud y --configurations z --deadline 5", "--deadline");
   for (const std::string option : {"--deadline 5", "--shard"})
     refuses("run --robot x --frames y " + option, option.substr(0, option.find(' ')));

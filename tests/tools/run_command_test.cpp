@@ -27,7 +27,7 @@ struct recording {
     put("2.xyz", "0.31 0.02 0.1\n1 1 1\n");
     put("1.xyz", "5 5 5\nnan 0 0\n0.01 0.03 1.0\n");
     put("3.xyz", "3 0 0\n0 0.7 0.21\n");
-    put("notes.md", "no frame\n");
+    put(".notes", "no frame\n");  // others are noted: clouds_test
   }
   ~recording() { fs::remove_all(folder); }
 
@@ -186,7 +186,8 @@ TEST_CASE("what is wrong with a recording is one sentence and exit code 1") {
   refuses(r.run() + " --intrinsics 500,500,0,0", "--intrinsics: is for depth images, and there is none");
   refuses(r.run() + " --check -0.001", "--check: must not be negative (metres)");
 
-  r.put("2.xyz", "0 0 zero\n");  // the frames before it are answered
+  fs::remove(r.folder / "list");  // a note would name it
+  r.put("2.xyz", "0 0 zero\n");   // the frames before it are answered
   const outcome o = run_command(r.run());
   CHECK(o.code == 1);
   CHECK(lines(o).size() == 1);
@@ -406,6 +407,7 @@ TEST_CASE("--csv says of every frame what the lines say, and of a plan which way
   refuses(r.run() + " --csv --json", "--json");
   refuses(r.run() + " --report out.html", "python3 -m clearance run --report out.html");
   refuses(r.run() + " --csv=yes", "--csv");
+  fs::remove(svg);  // a note would name it
   r.put("1.xyz", "0 0 zero\n");
   refuses(r.run() + " --csv", r.frame(0));  // no line of names either
 }

@@ -108,7 +108,7 @@ TEST_CASE("run --self-filter says in every frame what query says, and --check is
   CHECK(row.ends_with(",1,0"));
   CHECK(lines(run_command(both + " --plan " + few.path))[0].at("plan").at("lower").at(0) ==
         lines(run_command(both))[0].at("lower"));
-  refuses(both + " --merge", "--self-filter: cannot be mixed with --merge");
+  refuses(both + " --merge", "--merge: cannot be mixed with --self-filter");
 }
 
 }  // namespace self_filter_test

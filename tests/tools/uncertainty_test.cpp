@@ -336,8 +336,8 @@ TEST_CASE("What is wrong about uncertainty is one sentence that names the option
   refuses(q.ask + " --delay -1 --max-speed 1", "--delay: must be from 0");
   refuses(q.ask + " --max-speed 1", "--max-speed: needs --delay");
   refuses(q.ask + " --max-speed nan --delay 1", "--max-speed");
-  refuses(q.ask + " --sensor lidar:0.1,0 --shard", "--sensor: cannot be mixed with --shard");
-  refuses(q.ask + " --calibration 0.1,0 --deadline 5", "--deadline: is for the least distance alone");
+  refuses(q.ask + " --sensor lidar:0.1,0 --shard", "--shard: cannot be mixed with --sensor");
+  refuses(q.ask + " --calibration 0.1,0 --deadline 5", "--deadline: cannot be mixed with --calibration");
   refuses(m.ask + " --joint-error 1,2,3", "--joint-error: needs one number, or one for each of the robot's 2");
   refuses(m.ask + " --joint-error 1e300", "--joint-error: and --joint-speed move a link by more than 1e15 m");
   refuses(m.ask + " --joint-error -1", "--joint-error: needs 0 or more");
@@ -350,7 +350,7 @@ TEST_CASE("What is wrong about uncertainty is one sentence that names the option
     refuses(planned + " --max-speed 1 --delay 1 --plan-time -1", "--plan-time: must be from 0");
   }
   refuses(run + " --max-speed 1 --delay 1 --plan-time 1", "--plan-time: is for --plan");
-  refuses(plan + " --sensor kinect --shard", "--sensor: cannot be mixed with --shard");
+  refuses(plan + " --sensor kinect --shard", "--shard: cannot be mixed with --sensor");
   const scratch_file rows(".csv", "slide,turn\n0,0\n0.2,0\n");
   const std::string far = "plan --backend host --model triangles --robot " + m.urdf.path + " --cloud " + m.cloud.path +
                           " --configurations " + rows.path + " --joint-error 0.1,0 --check 0.2 --d-max ";

@@ -133,7 +133,7 @@ TEST_CASE("What is uncertain about a camera is in --unseen, too") {
   CHECK(ask(" --calibration 0.5,0").at("state") == "possible");
 }
 
-TEST_CASE("What is uncertain about joints is in --unseen, of query, run and plan, with and without --self-filter") {
+TEST_CASE("What is uncertain about joints is in --unseen, of query, run and plan") {
   const watched_boxes q;
   const scratch_file urdf(".urdf", moving_boxes_text), image(".png", png(1000, 1200));
   const scratch_file rows(".csv", "turn,slide\n0,0\n0,-0.1\n"), still(".csv", "turn,slide\n0,-0.1\n"),
@@ -150,10 +150,69 @@ TEST_CASE("What is uncertain about joints is in --unseen, of query, run and plan
   CHECK(lower(all, 1).template get<double>() == Approx(lower(sure, 1).template get<double>() - 0.2).margin(1e-6));
   CHECK(vague.at("lower") == lower(all, 1));
   CHECK(vague.at("lower") < sure.at("unseen").at("lower"));
-  CHECK(parsed(run_command(alone + off + " --self-filter 0.001")).at("unseen").at("lower") == vague.at("lower"));
-  for (const std::string filter : {"", " --self-filter 0.001"})
-    CHECK(lines(run_command(frame + off + filter))[0].at("unseen").at("lower") == vague.at("lower"));
+  CHECK(lines(run_command(frame + off))[0].at("unseen").at("lower") == vague.at("lower"));
   CHECK(lines(run_command(plan + off))[1].at("unseen").at("lower") == vague.at("lower"));
+}
+
+TEST_CASE("plan --between --unseen asks the ways about hidden room, and run --plan --unseen the rows of the plan") {
+  // The camera looks along z = 1, where nothing is before the tool; behind is hidden. The tool passes through that.
+  const scratch_file urdf(".urdf", moving_boxes_text), image(".png", png(1000, 1200)), clear(".png", png(9000, 9000));
+  const scratch_file rows(".csv", "turn,slide\n0,0\n0,1\n"), through(".csv", "turn,slide\n0,0\n0,0.5\n"),
+      still(".csv", "turn,slide\n0,0\n"), list(".txt", image.path + "\n");
+  const std::string robot = " --backend host --model triangles --robot " + urdf.path +
+                            " --camera-pose=-2,0,1,-0.5,0.5,-0.5,0.5 --intrinsics 100,100,0.5,0 --unseen 0.1:3",
+                    plan = "plan" + robot + " --configurations " + rows.path + " --cloud ";
+  const std::string ask = plan + image.path;
+  const outcome apart = run_command(ask + " --check 0.3"), between = run_command(ask + " --between --check 0.3");
+  CHECK(apart.code == 0);  // both rows are 0.4 m from it
+  CHECK(between.code == 2);
+  const auto all = lines(between);
+  CHECK(all[0].at("way").at("state") == "free");  // no point is nearer
+  CHECK((all[0].at("way").at("unseen").at("state") == "unknown" && all[0].at("way").at("unseen").at("lower") == 0));
+  CHECK(all[0].at("way").at("unseen").at("part") == "tool");
+  const auto& ways = all[2].at("plan").at("ways");
+  CHECK((ways.at("first_below").is_null() && ways.at("unseen").at("first_below") == 0));
+  CHECK(all[2].at("check").at("passes") == false);
+  CHECK(run_command(ask + " --between --check 0").code == 2);
+  const auto exact = lines(run_command(ask + " --between"));
+  CHECK(exact[0].at("way").at("unseen").at("state") == "unknown");
+  std::istringstream table(run_command(ask + " --between --csv --check 0.3").out);
+  std::string names, row;
+  std::getline(table, names), std::getline(table, row);
+  CHECK(names.ends_with(",way_unseen_state,way_unseen_lower,way_unseen_part"));
+  CHECK(row.ends_with(",unknown,0.0,tool"));
+  CHECK(run_command(ask + " --between --csv --check 0.3").err.find("from row 0 to the next what is hidden") !=
+        std::string::npos);
+  // A way aside is free, and as far as its nearest end; if no pixel hides anything, infinitely.
+  const scratch_file aside(".csv", "turn,slide\n0,-0.1\n0,0\n");
+  const auto free = lines(run_command("plan" + robot + " --between --configurations " + aside.path + " --cloud " +
+                                      image.path + " --check 0.3"));
+  CHECK(free[0].at("way").at("unseen").at("state") == "free");
+  CHECK(free[0].at("way").at("unseen").at("lower") > 0.3);
+  CHECK(free[0].at("way").at("unseen").at("lower") <= free[1].at("unseen").at("lower"));
+  const auto open = lines(run_command(plan + clear.path + " --between --check 0.3"));
+  CHECK((open[0].at("way").at("unseen").at("state") == "free" && open[2].at("check").at("passes") == true));
+  // What is uncertain is in it: the way aside is 0.4 m away, and 0.2 m of that are not certain.
+  const std::string vague = " --joint-error 0.2,0";
+  CHECK(run_command("plan" + robot + " --between --configurations " + aside.path + " --cloud " + image.path +
+                    " --check 0.3" + vague)
+            .code == 2);
+
+  const std::string run = "run" + robot + " --frames " + list.path + " --trajectory " + still.path + " --check 0.3";
+  CHECK(run_command(run).code == 0);
+  const outcome planned = run_command(run + " --plan " + through.path);
+  CHECK(planned.code == 2);
+  const auto its = lines(planned)[0].at("plan");
+  CHECK(its.at("first_below").is_null());
+  CHECK(its.at("unseen").at("first_below") == 1);
+  CHECK(its.at("unseen_lower").at(1) == 0);
+  CHECK(its.at("unseen_lower").at(0) == lines(planned)[0].at("unseen").at("lower"));
+  CHECK(run_command(run + " --plan " + still.path).code == 0);
+  CHECK(run_command(run + " --plan " + still.path + " --max-speed 1 --delay 0 --plan-time 0.2").code == 2);
+  CHECK(run_command(run + " --csv --plan " + through.path).out.find(",plan_unseen_lower,plan_unseen_at\n") !=
+        std::string::npos);
+  refuses(run + " --plan " + still.path + " --self-filter 0.01",
+          "--plan: cannot be mixed with --unseen and --self-filter: the plan may lead into the room");
 }
 
 TEST_CASE("--scene has the hidden room, and the way behind the pixel") {

@@ -4,7 +4,7 @@
 
 #include "support/catch.hpp"
 
-#include <clearance/io/ply.hpp>
+#include <clearance/io/cloud_file.hpp>
 
 #include <cstring>
 #include <fstream>

@@ -5,7 +5,7 @@
 #include "../backends.hpp"
 #include "../stopwatch.hpp"
 
-#include <clearance/frame/readable.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/query/query.hpp>
 #include <clearance/usual_models.hpp>
 
@@ -87,7 +87,7 @@ class robot_on_backend final : public backend_robot {
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) override;
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override;
   clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) override;
-  clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options) override;
+  clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options, bool until_end) override;
   std::vector<clearance::part_witness> witnesses(poses_of poses,
                                                  std::span<const clearance::part_minimum> minima) override;
   clearance::min_distances_result plan(poses_of poses, double d_max) override;
@@ -95,6 +95,9 @@ class robot_on_backend final : public backend_robot {
                                                         const std::vector<double>& radii) override;
   std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                        const clearance::motion_clearance_options& options) override;
+  std::vector<clearance::motion_clearance_result> hidden_ways(std::span<const clearance::io::joint_motion> ways,
+                                                              const clearance::motion_clearance_options& options,
+                                                              const clearance::unseen& room) override;
   std::span<const clearance::part_facts> facts() override {
     return with_usual_trees([](const auto& trees) { return trees.view().facts; });
   }
@@ -134,6 +137,10 @@ class robot_on_backend final : public backend_robot {
   auto with_clouds(Ask ask) {
     return any_uncertain_ ? ask(uncertain_) : ask(clouds_);
   }
+
+  /// Of clouds that are all images. `until_end`: as they may be when a plan ends.
+  template <class Use>
+  auto with_images(bool until_end, Use use);
 
   prepared_query& prepared();
   prepared_plan& planned();

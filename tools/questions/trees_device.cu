@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/backend/device.cuh>
+#include <clearance/backends/device.cuh>
 
 #include "trees.hpp"
 

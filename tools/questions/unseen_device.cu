@@ -4,4 +4,4 @@
 
 #include "unseen.hpp"
 
-template clearance::unseen_result robot_on_backend<clearance::device>::unseen(poses_of, const clearance::unseen&);
+template clearance::unseen_result robot_on_backend<clearance::device>::unseen(poses_of, const clearance::unseen&, bool);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Lets trees in arrays run on a device though they are too deep or wide for its quicker way.
 
 #include <clearance/concepts.hpp>
 

@@ -1,16 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Builds a tree over primitives, top down. You choose the volumes, how they fit, and how nodes are split.
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/bvh/bvh.hpp>
-#include <clearance/bvh/fit.hpp>
 #include <clearance/bvh/split.hpp>
+#include <clearance/concepts.hpp>
 
 #include <ranges>
 #include <stdexcept>
 #include <string>
 
 namespace clearance {
+
+/// Fit rule: a node encloses the balls of all leaves below it. The tighter rule, and the default.
+struct wrapped {
+  template <class V>
+  V operator()(std::span<const ball> leaves, std::span<const V>) const {
+    return bounding_volume_traits<V>::fit(leaves);
+  }
+};
+
+/// Fit rule: a node encloses its children's volumes, as in the first Inner Sphere Trees. Needs a volume with balls().
+struct layered {
+  template <class V>
+  V operator()(std::span<const ball> leaves, std::span<const V> children) const {
+    static_assert(
+        requires(const V& v) { std::span<const ball>(bounding_volume_traits<V>::balls(v)); },
+        "the layered fit needs a volume with balls(): a few balls whose convex hull contains it");
+    if (children.empty()) return bounding_volume_traits<V>::fit(leaves);
+    std::vector<ball> all;
+    for (const V& child : children)
+      for (const ball& b : bounding_volume_traits<V>::balls(child)) all.push_back(b);
+    return bounding_volume_traits<V>::fit(all);
+  }
+};
 
 struct build_options {
   std::uint32_t width = 8;      ///< Children per node: 2, 4 or 8.
@@ -86,8 +110,9 @@ inline topology arrange(std::span<split_item> items, const build_options& option
 }  // namespace detail
 
 /// Builds a tree of volumes V over a contiguous range of primitives on the host, top down; deterministic. A stack of 64
-/// entries suffices for it (`stack_need`). Throws std::invalid_argument if there is no primitive, one is not finite or
-/// has a negative radius, or an option is wrong. Returns a bvh<V, P>; `auto` gives a bad V its message.
+/// entries suffices for it (`stack_need`). Throws std::invalid_argument if there is no primitive, one is not finite,
+/// has a negative radius or contradicts itself, or an option is wrong. Returns a bvh<V, P>; `auto` gives a bad V its
+/// message.
 template <class V, std::ranges::contiguous_range R, class Fit = wrapped, class Split = surface_area_split,
           primitive P = std::ranges::range_value_t<R>>
 auto build(const R& input, build_options options = {}, Fit fit = {}, Split split = {}) {
@@ -109,6 +134,10 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
       const vec3 r{b.radius, b.radius, b.radius};
       lower = splits::least(lower, b.center - r), upper = splits::most(upper, b.center + r);
     }
+    if constexpr (requires { primitives[id].consistent(); })
+      if (!primitives[id].consistent())
+        throw std::invalid_argument("clearance::build: the members of primitive " + std::to_string(id) +
+                                    " contradict one another (triangle::from gives a triangle its normal)");
     items[id] = {id, {lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}};
   }
   const auto too_deep = [&](const detail::topology& t) { return t.depth * (options.width - 1) + 1 > 64; };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A list that passes for a tree: for a few primitives, or to check a tree's answers.
 
 #include <clearance/concepts.hpp>
 

@@ -2,8 +2,7 @@
 #pragma once
 // A tree over a cloud on the host.
 
-#include <clearance/backend/host.hpp>
-#include <clearance/cloud_tree/morton.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/cloud_tree/tree_view.hpp>
 #include <clearance/scan/drops.hpp>
 

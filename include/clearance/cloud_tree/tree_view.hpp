@@ -1,12 +1,92 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A tree over the points of a cloud, for questions with so many poses that building it pays.
+// A tree over the points of a cloud, for questions with so many poses that building it pays. Points that are neighbours
+// in space become neighbours in memory.
 
 #include <clearance/concepts/capsule.hpp>
 #include <clearance/ground/math.hpp>
 #include <clearance/point_source.hpp>
+#include <clearance/result.hpp>
 
 namespace clearance::cloud_tree {
+
+// An order in which neighbours in space are neighbours in memory.
+
+/// Numbers the cells of a grid along a Z-curve (Morton). It affects only a tree's speed, so it need not be the same
+/// everywhere.
+struct morton_grid {
+  static constexpr int bits = 10;  ///< Per coordinate.
+  static constexpr std::uint32_t samples = 256;
+
+  vec3 low = {0, 0, 0};
+  real per_metre = 0;
+
+  morton_grid() = default;
+  /// A grid around the space between two positions, and a little more. Points beyond it fall into the outermost cells.
+  /// The positions are quantiles of samples and not the ends: a few far points, as lidars see, must not press the
+  /// others into one.
+  CLEARANCE_HD morton_grid(vec3 a, vec3 b) {
+    const vec3 size = b - a;
+    const real side = max(max(size.x, size.y), size.z) * 1.5f;
+    low = {(a.x + b.x - side) / 2, (a.y + b.y - side) / 2, (a.z + b.z - side) / 2};
+    per_metre = side > least_normal * (4 << bits) ? (1 << bits) / side : 0;  // never infinite
+  }
+  /// The ranks of these quantiles among `count` samples in ascending order.
+  CLEARANCE_HD static std::uint32_t low_rank(std::uint32_t count) { return count / 16; }
+  CLEARANCE_HD static std::uint32_t high_rank(std::uint32_t count) { return count - 1 - count / 16; }
+
+  CLEARANCE_HD std::uint32_t operator()(vec3 p) const {
+    return spread(cell(p.x - low.x)) | spread(cell(p.y - low.y)) << 1 | spread(cell(p.z - low.z)) << 2;
+  }
+
+ private:
+  CLEARANCE_HD std::uint32_t cell(real offset) const {
+    return std::uint32_t(min(max(offset * per_metre, 0), real((1 << bits) - 1)));
+  }
+  CLEARANCE_HD static std::uint32_t spread(std::uint32_t x) {
+    x = (x | x << 16) & 0x030000ff, x = (x | x << 8) & 0x0300f00f, x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
+  }
+};
+
+// An order of an image's pixels in which neighbours are neighbours in memory.
+
+/// Squares of 64 x 64 pixels one after another, row by row, and the pixels of each along a Z-curve: eight pixels are a
+/// tile of 4 x 2, eight tiles a square, and so on. Places beyond the image's edges have no number.
+struct pixel_order {
+  static constexpr bool counts = true;  ///< Invalid points were not counted before.
+  static constexpr std::uint32_t bits = 6, side = 1 << bits;
+
+  std::uint32_t width = 0, height = 0, squares = 0;  ///< `squares`: in a row.
+
+  pixel_order() = default;
+  /// Has no positions if the pixels are not whole rows, or if there are more places than numbers.
+  pixel_order(std::uint32_t pixels, std::uint32_t columns) {
+    if (columns == 0 || pixels % columns != 0) return;
+    const std::uint64_t across = (std::uint64_t(columns) + side - 1) / side,
+                        down = (std::uint64_t(pixels / columns) + side - 1) / side;
+    if (across * down >> (32 - 2 * bits) == 0)
+      width = columns, height = pixels / columns, squares = std::uint32_t(across);
+  }
+  std::uint32_t positions() const { return squares * ((height + side - 1) / side) * side * side; }
+
+  CLEARANCE_HD std::uint32_t operator()(std::uint32_t i) const {
+    const std::uint32_t square = i >> 2 * bits;
+    const std::uint32_t x = square % squares * side + every_other(i), y = square / squares * side + every_other(i >> 1);
+    return x < width && y < height ? y * width + x : none;
+  }
+
+  template <unsigned>
+  CLEARANCE_HD std::uint32_t of_block(std::uint32_t i) const {
+    return (*this)(i);
+  }
+
+ private:
+  CLEARANCE_HD static std::uint32_t every_other(std::uint32_t i) {
+    i &= 0x555, i = (i | i >> 1) & 0x333, i = (i | i >> 2) & 0x70f;
+    return (i | i >> 4) & (side - 1);
+  }
+};
 
 /// A valid point of a cloud, in the cloud's own coordinates, and its number there.
 struct alignas(16) numbered_point {

@@ -12,7 +12,8 @@ namespace clearance {
 /// What a user asks: its options as members, and what the answer is.
 ///
 /// Law: one value gives the same `result` on every backend, to the bit. Lengths are doubles in metres; what cannot be
-/// asked is refused with std::invalid_argument when it is asked.
+/// asked is refused with std::invalid_argument when it is asked. Optional: `check(parts)` or `check()` refuses what no
+/// frame could mend when a `query` is made.
 template <class Q>
 concept question = std::copy_constructible<Q> && requires { typename Q::result; };
 

@@ -5,6 +5,8 @@
 #include <clearance/concepts/tree.hpp>
 
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 namespace clearance {
 
@@ -76,6 +78,18 @@ template <class T>
 concept bounded_traversal = requires {
   { T::capacity } -> std::convertible_to<std::uint64_t>;
 };
+/// Refuses a tree that is too deep for a traversal's stack, which would have to drop nodes. Throws
+/// std::invalid_argument.
+template <class Traversal>
+void check_stack(std::uint32_t depth, std::uint32_t width) {
+  if constexpr (bounded_traversal<Traversal>)
+    if (stack_need(depth, width) > Traversal::capacity)
+      throw std::invalid_argument(
+          "clearance: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
+          " needs a stack of " + std::to_string(stack_need(depth, width)) + " entries, but this traversal has " +
+          std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
+}
+
 /// A recursive traversal. `device_stack(depth)` is the cudaLimitStackSize that a launch needs, in bytes.
 template <class T>
 concept recursing_traversal = requires(std::uint32_t depth) {

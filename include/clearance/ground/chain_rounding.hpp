@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// How much rounding adds up along a chain of joints, so that places beyond what a bracket covers are refused.
 
 #include <clearance/ground/pose.hpp>
 
@@ -25,6 +26,13 @@ struct chain_rounding {
   }
   /// The frame rotates; or it did before, if a chain is followed from its end.
   CLEARANCE_HD void turned() { turn += 16 * unit; }
+  /// What rounding loses of a sum whose terms' magnitudes add up to `of`.
+  CLEARANCE_HD static double of_sum(double of) { return 2 * unit * of; }
+  /// May a link turn by so many radians? `of`: the magnitudes of the terms of this sum. Sines are known up to 2^30; a
+  /// sum is known to a nanoradian up to 2^22.
+  CLEARANCE_HD static bool turns(double by, double of, bool is_sum) {
+    return absolute(by) <= 0x1p30 && (!is_sum || of <= 0x1p22);
+  }
   CLEARANCE_HD bool covered(double away) const { return lost <= 1e-9 + 0x1p-45 * away; }
 
   /// Bounds on a length without a root: from below its largest coordinate, from above their sum.

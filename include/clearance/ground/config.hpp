@@ -27,6 +27,14 @@
 #define CLEARANCE_ROLLED
 #endif
 
+/// Goes behind a parameter, or the name of a member function, that the result views: clang warns if that is a temporary
+/// which is gone before the result is used.
+#if defined(__clang__) && !defined(__CUDACC__)
+#define CLEARANCE_LIFETIMEBOUND [[clang::lifetimebound]]
+#else
+#define CLEARANCE_LIFETIMEBOUND
+#endif
+
 #if defined(__FAST_MATH__)
 #error "clearance: -ffast-math breaks NaN handling and the certified bracket; compile this file without it"
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The numbers that one thread goes through.
 
 #include <clearance/ground/config.hpp>
 

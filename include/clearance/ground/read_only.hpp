@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Reads memory that nobody writes meanwhile, in the widest words that it allows.
 
 #include <clearance/ground/math.hpp>
 
@@ -7,6 +8,15 @@
 #include <type_traits>
 
 namespace clearance {
+
+/// A value and the words that it is made of, for kernels that move it in words.
+template <class T, class Word>
+union as_words {
+  CLEARANCE_HD as_words() {}
+  CLEARANCE_HD ~as_words() {}
+  T value;
+  Word words[sizeof(T) / sizeof(Word)];
+};
 
 /// Reads memory that no thread writes while a query runs, in wide pieces. So device compilers do not take it for shared
 /// memory.
@@ -16,12 +26,7 @@ CLEARANCE_HD T read_only(const T* from) {
   using word =
       std::conditional_t<alignof(T) % 16 == 0, uint4, std::conditional_t<alignof(T) % 8 == 0, uint2, std::uint32_t>>;
   if constexpr (sizeof(T) % sizeof(word) == 0 && alignof(T) >= 4) {
-    union copy {
-      __device__ copy() {}
-      __device__ ~copy() {}
-      T value;
-      word words[sizeof(T) / sizeof(word)];
-    } c;
+    as_words<T, word> c;
 #pragma unroll
     for (std::size_t i = 0; i < sizeof(T) / sizeof(word); ++i)
       c.words[i] = __ldg(reinterpret_cast<const word*>(from) + i);

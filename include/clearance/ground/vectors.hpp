@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Lets loops use a processor's wide vectors, without a compiler flag and with the same bits.
 
 #include <clearance/ground/math.hpp>
 

@@ -2,8 +2,8 @@
 #pragma once
 // A point cloud in memory that keeps its file's numbering and precision.
 
-#include <clearance/frame/clouds.hpp>
-#include <clearance/frame/frame.hpp>
+#include <clearance/frames/clouds.hpp>
+#include <clearance/frames/frame.hpp>
 #include <clearance/points/strided_points.hpp>
 
 #include <optional>
@@ -26,7 +26,7 @@ struct float_cloud {
   position_error off;
 
   /// What min_distance takes; this object must outlive it.
-  placed<point_span> view() const {
+  placed<point_span> view() const CLEARANCE_LIFETIMEBOUND {
     point_span source(points);
     source.filter.sensor = {-real(origin.x()), -real(origin.y()), -real(origin.z())};
     source.off = off;
@@ -49,8 +49,10 @@ struct cloud {
   float_cloud relative_to(const Eigen::Vector3d& origin,
                           const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 
-  /// Floats for a robot whose parts have these poses (world-from-part). They are relative to 0 if the parts' middle is
-  /// within 32 m of it, so a file's floats stay as they are; else to the middle, rounded to metres.
+  /// Floats for a robot whose parts have these poses (world-from-part), in one configuration or many. They are relative
+  /// to 0 if the first part is within 32 m of it, so a file's floats stay as they are; else to that part's place,
+  /// rounded to metres. So each of many configurations of a robot whose first part stays has the answer that it has
+  /// alone.
   float_cloud near(std::span<const Eigen::Isometry3d> poses,
                    const Eigen::Isometry3d& world_from_cloud = Eigen::Isometry3d::Identity()) const;
 };
@@ -76,9 +78,10 @@ inline float_cloud cloud::relative_to(const Eigen::Vector3d& origin, const Eigen
 
 inline float_cloud cloud::near(std::span<const Eigen::Isometry3d> poses,
                                const Eigen::Isometry3d& world_from_cloud) const {
-  const std::vector<world_transform> parts(poses.begin(), poses.end());
-  const auto part = [&](std::uint32_t k) -> const world_transform& { return parts[k]; };
-  const auto [x, y, z] = frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), part, parts.size());
+  if (poses.empty()) return relative_to(Eigen::Vector3d::Zero(), world_from_cloud);
+  const world_transform first(poses[0]);
+  const auto [x, y, z] =
+      frames::middle_of(rigid_transform_of(world_from_cloud, "cloud"), [&first](std::uint32_t) { return first; }, 1);
   const Eigen::Vector3d middle(x, y, z);
   if (middle.cwiseAbs().maxCoeff() > 32) return relative_to(middle.array().round(), world_from_cloud);
   return relative_to(Eigen::Vector3d::Zero(), world_from_cloud);

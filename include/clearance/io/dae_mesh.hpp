@@ -3,6 +3,7 @@
 // The <geometry> of a COLLADA file. Every list must have exactly as many numbers as the file says.
 
 #include <clearance/io/mesh_polygons.hpp>
+#include <clearance/io/note_tally.hpp>
 #include <clearance/io/xml.hpp>
 
 #include <cmath>
@@ -75,8 +76,10 @@ class dae_ids {
   std::map<std::string, const xml_element*, std::less<>> by_id_;  // null: two elements have this id
 };
 
-/// The positions of a <mesh>: those that its <vertices> refer to.
-inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const xml_place& vertices) {
+/// The positions of a <mesh>: those that its <vertices> refer to. Some exporters count an array's floats, which is
+/// taken for what is meant, with a note; every index is checked against the positions that are there.
+inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const xml_place& vertices,
+                                                  std::vector<std::string>& notes) {
   vertices.only({"id", "name"}, {"input", "extra"});
   const xml_element* input = nullptr;
   for (const xml_element* each : dae_children(vertices.element, "input"))
@@ -92,13 +95,18 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
   const auto access = source.in(*accessor);
   access.only({"source", "count", "offset", "stride"}, {"param"});
   const auto array = mesh.in(dae_ids(dae_children(source.element, "float_array")).find(access, "source"));
-  const std::uint64_t size = dae_count(array, "count"), count = dae_count(access, "count");
+  const std::uint64_t size = dae_count(array, "count");
+  std::uint64_t count = dae_count(access, "count");
   const std::uint64_t offset = dae_count(access, "offset", 0), stride = dae_count(access, "stride", 1);
   for (std::size_t i = 0; i < 3; ++i)
     if (accessor->children.size() < 3 || stride < 3 ||
         access.in(accessor->children[i]).attribute("name") != std::string(1, "XYZ"[i]))
       access.refuse("of positions has no params X, Y and Z");
   const auto values = dae_numbers<double>(array, &size);
+  if (count == size && size > 3 && offset == 0 && size % stride == 0) {
+    count = size / stride;
+    note_once(notes, "has an <accessor> that counts floats and not positions, which is taken so");
+  }
   if (count > 0 && offset + (count - 1) * stride + 3 > size) access.refuse("needs more values than its array has");
   std::vector<Eigen::Vector3d> made(count);
   for (std::uint64_t i = 0; i < count; ++i)
@@ -207,7 +215,7 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
 }
 
 /// The faces of a <geometry>; lines have no surface and are skipped.
-inline polygon_mesh dae_geometry(const xml_place& geometry) {
+inline polygon_mesh dae_geometry(const xml_place& geometry, std::vector<std::string>& notes) {
   geometry.only({"id", "name"}, {"asset", "mesh", "extra"});
   const xml_element* element = geometry.child("mesh");
   if (!element) geometry.refuse("has no mesh");
@@ -218,7 +226,7 @@ inline polygon_mesh dae_geometry(const xml_place& geometry) {
   if (vertices.size() != 1) mesh.refuse(vertices.empty() ? "has no vertices" : "has more than one <vertices>");
   const std::string& id = mesh.in(*vertices.front()).attribute("id");
   polygon_mesh made;
-  made.vertices = dae_positions(mesh, mesh.in(*vertices.front()));
+  made.vertices = dae_positions(mesh, mesh.in(*vertices.front()), notes);
   for (const auto& child : element->children)
     if (child.name == "triangles" || child.name == "polylist" || child.name == "polygons" ||
         child.name == "tristrips" || child.name == "trifans")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A depth image as its file holds it, without a camera.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Fingerprints of bytes and of closed meshes: files that are kept for later are known by them.
 
 #include <clearance/io/bytes.hpp>
 #include <clearance/solid/close_mesh.hpp>

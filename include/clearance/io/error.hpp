@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// What all readers of files share: errors in sentences, limits on size, and a whole file as bytes.
 
 #include <clearance/io/sentence.hpp>
 

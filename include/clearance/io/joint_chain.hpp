@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// From a robot description to a joint chain, which poses many configurations at once.
 
 #include <clearance/io/kinematics.hpp>
 #include <clearance/robot/joint_chain.hpp>
@@ -21,6 +22,8 @@ inline joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const 
     all[link].parent = std::uint32_t(tree.link(by.parent));
     if (by.kind == joint_kind::fixed) continue;
     const joint_drive& drive = tree.drive(above);
+    if (!(drive.offsets <= 0x1p22))
+      throw std::invalid_argument("joint \"" + by.name + "\" follows by offsets beyond 2^22 (rad, m)");
     all[link].axis = {by.axis.x(), by.axis.y(), by.axis.z()};
     all[link].value = std::uint32_t(drive.value), all[link].factor = drive.factor, all[link].offset = drive.offset;
     all[link].slides = by.kind == joint_kind::prismatic;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The motion of a robot whose joints go from one configuration to another, each at constant speed.
 
 #include <clearance/io/kinematics.hpp>
 #include <clearance/motion.hpp>
@@ -26,12 +27,17 @@ class joint_motion {
         throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) +
                                     " links, and none of number " + std::to_string(link));
   }
+  template <class... Any>
+  joint_motion(const kinematic_tree&&, const Any&...) = delete;  // the tree would be gone when it is asked; name it
   /// The same for a robot with its parts.
   template <class Robot>
     requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
   joint_motion(const Robot& robot, std::span<const double> from, std::span<const double> to, joint_options options = {},
                const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity())
       : joint_motion(robot.kinematics(), links_of(robot), from, to, options, base) {}
+  template <class Robot, class... Any>
+    requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
+  joint_motion(const Robot&&, const Any&...) = delete;  // the robot would be gone
 
   /// Throws std::invalid_argument if the numbers of parts and links differ.
   moment at(double t, std::span<const part_facts> parts) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A cache: files in a folder that any number of programs may share.
 
 #include <clearance/io/digest.hpp>
 

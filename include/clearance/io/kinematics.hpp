@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The joints of a robot, and where they put its links, in double. What rounding would spoil is refused.
 
 #include <clearance/ground/chain_rounding.hpp>
 
@@ -37,6 +38,7 @@ struct joint {
   std::optional<mimic> follows;
 
   bool movable() const { return kind != joint_kind::fixed && !follows; }
+  bool turns() const { return kind == joint_kind::revolute || kind == joint_kind::continuous; }
 };
 
 /// How a joint follows the configuration, directly or through others: its value is `factor` times value number `value`
@@ -134,8 +136,9 @@ class kinematic_tree {
   }
 
   /// base-from-link for every link, composed in double. Throws std::invalid_argument if the number of values is wrong,
-  /// if a value is not finite or beyond its limits, if a link's place is not finite, or if the ways to it are so long
-  /// and cancel so well that double loses more than a bracket covers.
+  /// if a value is not finite or beyond its limits, if a link turns by more than 2^30 rad (2^22 by a factor and an
+  /// offset), if its place is not finite, or if the ways to it are so long and cancel so well that double loses more
+  /// than a bracket covers.
   std::vector<Eigen::Isometry3d> link_poses(std::span<const double> q, joint_options options = {}) const {
     if (q.size() != size())
       throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
@@ -145,8 +148,15 @@ class kinematic_tree {
       check_value(joints_[movable_[i]], q[i], options);
       value[movable_[i]] = q[i];
     }
+    std::vector<double> terms(joints_.size(), 0.0),
+        off(joints_.size(), 0.0);  // of followers: magnitudes, and what is lost
     for (const auto& [j, leader] : followers_) {
-      value[j] = joints_[j].follows->multiplier * value[leader] + joints_[j].follows->offset;
+      const mimic& by = *joints_[j].follows;
+      const double product = by.multiplier * value[leader];
+      value[j] = product + by.offset;
+      if (by.multiplier != 1 || by.offset != 0) terms[j] = std::abs(product) + std::abs(by.offset);
+      off[j] =
+          std::abs(by.multiplier) * off[leader] + (exact(by, value[leader]) ? 0 : chain_rounding::of_sum(terms[j]));
       if (!std::isfinite(value[j]))
         throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[leader].name +
                                     "\" to a value that is not finite");
@@ -159,16 +169,17 @@ class kinematic_tree {
       rounding[child] = rounding[parent];
       rounding[child].step(at(poses[parent].translation()), at(by.origin.translation()), at(poses[child].translation()),
                            by.origin.translation().norm());
-      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous ||
-          by.origin.linear() != Eigen::Matrix3d::Identity())
-        rounding[child].turned();
+      if (by.turns() || by.origin.linear() != Eigen::Matrix3d::Identity()) rounding[child].turned();
+      if (by.turns() && (!chain_rounding::turns(value[j], terms[j], terms[j] != 0) || off[j] > 1e-9))
+        throw std::invalid_argument("joint \"" + by.name + "\" turns its link by more than " +
+                                    (terms[j] != 0 ? "2^22 rad, times a factor or plus an offset" : "2^30 rad"));
       if (by.kind == joint_kind::prismatic) {
+        rounding[child].lost += off[j];
         const position before = at(poses[child].translation());
         poses[child].translate(value[j] * by.axis);
         rounding[child].step(before, at(value[j] * by.axis), at(poses[child].translation()), std::abs(value[j]));
       }
-      if (by.kind == joint_kind::revolute || by.kind == joint_kind::continuous)
-        poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
+      if (by.turns()) poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
       if (!poses[child].matrix().allFinite())
         throw std::invalid_argument("joint \"" + by.name + "\" puts its link beyond what a number can hold");
       if (!rounding[child].covered(poses[child].translation().norm()))
@@ -181,6 +192,13 @@ class kinematic_tree {
 
  private:
   static position at(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+  /// Is a follower's value a small number without any rounding?
+  static bool exact(const mimic& by, double leader) {
+    const double product = by.multiplier * leader, sum = product + by.offset;
+    return std::fma(by.multiplier, leader, -product) == 0 && sum - product == by.offset && sum - by.offset == product &&
+           std::abs(product) + std::abs(by.offset) <= 0x1p22;
+  }
 
   struct step {
     std::size_t joint, parent, child;
@@ -266,6 +284,11 @@ class kinematic_tree {
 
   std::size_t find(const std::string& name, const std::string& for_whom) const {
     if (const auto at = joint_at_.find(name); at != joint_at_.end()) return at->second;
+    std::string steps;  // of a joint of several values
+    for (auto at = joint_at_.lower_bound(name + "/"); at != joint_at_.end() && at->first.starts_with(name + "/"); ++at)
+      steps += (steps.empty() ? "\"" : ", \"") + at->first + '"';
+    if (!steps.empty() && for_whom.empty())
+      throw std::invalid_argument("joint \"" + name + "\" has several values: " + steps);
     throw std::invalid_argument(for_whom.empty()
                                     ? "the robot has no joint \"" + name + "\""
                                     : "joint \"" + for_whom + "\" follows \"" + name + "\", which does not exist");

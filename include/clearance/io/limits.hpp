@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// How much a mesh file may take before it is refused, because a small file can unfold to a large mesh.
 
 #include <cstdint>
 

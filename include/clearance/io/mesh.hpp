@@ -1,39 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Reads a mesh file of any format that robots use.
 
 #include <clearance/io/mesh_dae.hpp>
-#include <clearance/io/mesh_glb.hpp>
+#include <clearance/io/mesh_gltf.hpp>
 #include <clearance/io/mesh_obj.hpp>
 #include <clearance/io/mesh_off.hpp>
 #include <clearance/io/mesh_ply.hpp>
 #include <clearance/io/mesh_stl.hpp>
+#include <clearance/io/text_file.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace clearance::io {
 
-/// "stl", "obj", "ply", "off", "dae" or "glb", from the file's name, or from its first bytes if the name has no ending.
+/// "stl", "obj", "ply", "off", "dae", "glb" or "gltf", from the file's name, or from its first bytes if the name has no
+/// ending.
 inline std::string mesh_format(const std::filesystem::path& path, std::string_view bytes) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  for (const char* known : {"stl", "obj", "ply", "off", "dae", "glb"})
+  for (const char* known : {"stl", "obj", "ply", "off", "dae", "glb", "gltf"})
     if (ending == std::string(".") + known) return known;
-  if (!ending.empty()) refuse(path.string(), "meshes are read from .stl, .obj, .ply, .off, .dae and .glb files");
+  if (!ending.empty()) refuse(path.string(), "meshes are read from .stl, .obj, .ply, .off, .dae, .glb and .gltf files");
   if (bytes.starts_with("ply") || bytes.starts_with("PLY")) return "ply";
   if (bytes.starts_with("OFF")) return "off";
   if (bytes.starts_with("glTF")) return "glb";
   return "stl";
 }
 
-/// Reads a mesh file: all its meshes, placed by its scene graph, its faces as triangles in their order. In metres; a
-/// COLLADA file's unit is honoured. Throws std::runtime_error with a sentence that names the file if it is missing, not
-/// a regular file, damaged, beyond a limit or without triangles, if an index is out of range or a coordinate not
-/// finite, or if its scene does not place a mesh.
-inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_limits& limits = {}) {
+/// A mesh file's triangles, and what was assumed about it.
+struct loaded_mesh {
+  triangle_mesh mesh;
+  std::string format;                ///< As mesh_format.
+  std::uint64_t bytes = 0;           ///< Read, of this file and of those that it names.
+  std::vector<std::string> notes{};  ///< To go on after the file's name: "has ...".
+
+  bool is_gltf() const { return format == "glb" || format == "gltf"; }
+};
+
+/// As load_mesh, with notes. Without `up` a glTF file is read as the format has it, y up, and that is noted.
+inline loaded_mesh load_mesh_noted(const std::filesystem::path& path, const mesh_limits& limits = {},
+                                   std::optional<gltf_axis> up = {}) {
   const std::string file = path.string();
   return within_memory(file, [&] {
     std::error_code failed;
@@ -45,19 +58,44 @@ inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_lim
         refuse(file, "is longer than the " + std::to_string(limits.bytes) +
                          " bytes that the limit leaves (mesh_limits::bytes)");
     }
-    const std::string bytes = read_bytes(file), format = mesh_format(path, without_mark(bytes));
+    std::string bytes = read_bytes(file);
+    loaded_mesh made{.mesh = {}, .format = mesh_format(path, without_mark(bytes)), .bytes = bytes.size()};
+    const std::string& format = made.format;
+    if (format == "obj" || format == "off" || format == "ply" || format == "gltf")
+      bytes = as_utf8(std::move(bytes), file);
+    mesh_limits left = limits;
+    left.bytes -= std::min(left.bytes, made.bytes);
+    std::uint64_t others = 0;
+    const auto gltf = [&] {
+      const glb_chunks chunks = format == "glb" ? read_glb_chunks(bytes, file) : glb_chunks{without_mark(bytes), {}};
+      return read_gltf(chunks.json, chunks.data, file, left, made.notes, others);
+    };
     polygon_mesh mesh = format == "obj"   ? read_obj(without_mark(bytes), file)
                         : format == "off" ? read_off(without_mark(bytes), file)
                         : format == "ply" ? read_ply_mesh(bytes, file)
-                        : format == "stl" ? read_stl(bytes, file)
-                        : format == "dae" ? read_dae(bytes, file, limits)
-                                          : read_glb(bytes, file, limits);
+                        : format == "stl" ? read_stl(bytes, file, made.notes)
+                        : format == "dae" ? read_dae(bytes, file, limits, made.notes)
+                                          : gltf();
+    made.bytes += others;
     if (mesh.ends.empty()) refuse(file, "has no triangles");
     if (mesh.corners.size() - 2 * mesh.ends.size() > limits.triangles)
       refuse(file, "has more than the " + std::to_string(limits.triangles) +
                        " triangles that the limit leaves (mesh_limits::triangles)");
-    return triangulate(std::move(mesh), file);
+    if (made.is_gltf())
+      for (auto& v : mesh.vertices) v = from_gltf(v, up.value_or(gltf_axis::y));
+    if (made.is_gltf() && !up) made.notes.push_back(gltf_note);
+    made.mesh = triangulate(std::move(mesh), file);
+    return made;
   });
+}
+
+/// Reads a mesh file: all its meshes, placed by its scene graph, its faces as triangles in their order. In metres, z
+/// up: a COLLADA file's unit is honoured, and the axis of a glTF file that `up` names is turned to z. Throws
+/// std::runtime_error with a sentence that names the file if it is missing, not a regular file, damaged, beyond a limit
+/// or without triangles, if an index is out of range or a coordinate not finite, or if its scene does not place a mesh.
+inline triangle_mesh load_mesh(const std::filesystem::path& path, const mesh_limits& limits = {},
+                               gltf_axis up = gltf_axis::y) {
+  return load_mesh_noted(path, limits, up).mesh;
 }
 
 }  // namespace clearance::io

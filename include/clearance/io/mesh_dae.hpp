@@ -13,13 +13,15 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace clearance::io {
 
 class dae_reader {
  public:
-  dae_reader(const xml_element& root, const std::string& file, const mesh_limits& limits)
-      : root_{root, file, ""}, scene_(file, limits) {}
+  dae_reader(const xml_element& root, const std::string& file, const mesh_limits& limits,
+             std::vector<std::string>& notes)
+      : root_{root, file, ""}, notes_(notes), scene_(file, limits) {}
 
   polygon_mesh read() {
     if (root_.element.name != "COLLADA") root_.refuse("begins the file, which is not a COLLADA file");
@@ -58,7 +60,8 @@ class dae_reader {
     for (const xml_element* node : dae_children(visual.element, "node")) walk(visual.in(*node), metres, 1);
     for (const auto& [geometry, mesh] : meshes_)
       if (!mesh) root_.in(*geometry).refuse("has no place in the scene, so it would be lost");
-    return scene_.take();
+    if (commas_) note_once(notes_, "has a <unit> with a decimal comma, which is read as a point");
+    return scene_.finish();
   }
 
  private:
@@ -96,7 +99,7 @@ class dae_reader {
   }
 
   /// The unit in an element's <asset>, in metres.
-  static double unit(const xml_place& of, double otherwise) {
+  double unit(const xml_place& of, double otherwise) {
     const xml_element* asset = of.child("asset");
     if (!asset) return otherwise;
     of.in(*asset).only({}, {"contributor", "coverage", "created", "keywords", "modified", "revision", "subject",
@@ -104,6 +107,11 @@ class dae_reader {
     const xml_element* unit = of.in(*asset).child("unit");
     if (!unit) return otherwise;
     of.in(*unit).only({"meter", "name"}, {});
+    if (const std::string* spelt = unit->attribute("meter"))
+      if (const auto metres = with_decimal_comma(*spelt)) {
+        commas_ = true;
+        return *metres;
+      }
     const double metres = of.in(*unit).number_or("meter", 1);
     if (!(metres > 0)) of.in(*unit).refuse("of " + std::to_string(metres) + " metres is no length");
     return metres;
@@ -119,12 +127,23 @@ class dae_reader {
   }
 
   /// Refuses a unit or up axis for only a part of the file: other readers apply the file's own to everything.
-  static void check_assets(const xml_place& of, double metres, const std::string& axis) {
+  void check_assets(const xml_place& of, double metres, const std::string& axis) {
     if (const double own = unit(of, metres); own != metres)
       of.refuse("has a unit of " + spelt(own) + " m of its own, the file's is " + spelt(metres) + " m");
     if (const std::string own = up(of, axis); own != axis)
       of.refuse("has an up axis " + io::quoted(own) + " of its own, the file's is " + io::quoted(axis));
     for (const auto& child : of.element.children) check_assets(of.in(child), metres, axis);
+  }
+
+  /// The number above 0 that "0,01" means. None for "1,000", which may be a thousand.
+  static std::optional<double> with_decimal_comma(std::string text) {
+    const std::size_t comma = text.find(',');
+    if (comma == text.npos || comma == 0 || text.find('.') != text.npos || text.find(',', comma + 1) != text.npos)
+      return std::nullopt;
+    if (text.size() - comma == 4 && text[0] != '0') return std::nullopt;
+    text[comma] = '.';
+    const auto metres = number<double>(text);
+    return metres && *metres > 0 && std::isfinite(*metres) ? metres : std::nullopt;
   }
 
   static std::string spelt(double metres) {
@@ -189,23 +208,26 @@ class dae_reader {
         at.only({"url", "sid", "name"}, {"bind_material", "extra"});
         const xml_element& found = geometries_.find(at, "url");
         std::optional<polygon_mesh>& mesh = meshes_[&found];
-        if (!mesh) mesh = dae_geometry(root_.in(found));
+        if (!mesh) mesh = dae_geometry(root_.in(found), notes_);
         scene_.place(*mesh, here);
       }
     }
   }
 
   const xml_place root_;
+  std::vector<std::string>& notes_;
   mesh_scene scene_;
   dae_ids geometries_, scenes_, nodes_;
   std::map<const xml_element*, std::optional<polygon_mesh>> meshes_;  // by geometry, once one is placed
+  bool commas_ = false;                                               // a unit has a decimal comma
 };
 
 /// All meshes of a COLLADA file's scene, once for each place that the scene gives them. The file's unit counts; its up
-/// axis does not, as in ROS tools.
-inline polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits = {}) {
+/// axis does not, as in ROS tools. Notes go on after the file's name.
+inline polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits,
+                             std::vector<std::string>& notes) {
   const xml_element root = read_xml(bytes, file, limits);
-  return dae_reader(root, file, limits).read();
+  return dae_reader(root, file, limits, notes).read();
 }
 
 }  // namespace clearance::io

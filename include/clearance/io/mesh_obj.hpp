@@ -114,7 +114,7 @@ class obj_reader {
   explicit obj_reader(const std::string& file) : file_(file) {}
 
   /// A statement that begins in line `at`. If `last`, nothing follows it, not even a line end.
-  void take(std::string_view line, std::size_t at, bool last) {
+  void read_line(std::string_view line, std::size_t at, bool last) {
     const std::string_view key = take_word(line);
     if (key == "v") {
       made_.vertices.push_back(take_vertex(line, file_, at));
@@ -185,7 +185,7 @@ inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
   for (std::size_t lines = 0; !rest.empty();) {
     const std::size_t first = lines + 1;
     const std::string_view all = rest, statement = take_obj_statement(rest, joined, lines);
-    reader.take(statement, first, rest.empty() && !all.ends_with('\n') && !all.ends_with('\r'));
+    reader.read_line(statement, first, rest.empty() && !all.ends_with('\n') && !all.ends_with('\r'));
   }
   return reader.finish();
 }

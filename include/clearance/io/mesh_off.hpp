@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Reads the mesh of an OFF file.
 
 #include <clearance/io/mesh_obj.hpp>
 

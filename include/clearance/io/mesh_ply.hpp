@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Reads the mesh of a PLY file, faces and triangle strips.
 
 #include <clearance/io/mesh_polygons.hpp>
 #include <clearance/io/ply_values.hpp>

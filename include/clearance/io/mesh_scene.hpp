@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// One mesh from a file's scene, which may place each of its meshes many times.
 
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
@@ -59,7 +60,7 @@ class mesh_scene {
                         " elements in its nodes, instances counted each time (mesh_limits::values)");
   }
 
-  polygon_mesh take() { return std::move(made_); }
+  polygon_mesh finish() { return std::move(made_); }
 
  private:
   void check(const Eigen::Affine3d& here) const {

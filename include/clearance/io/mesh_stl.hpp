@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Reads the triangles of an STL file, ASCII or binary.
 
 #include <clearance/io/bytes.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
 #include <clearance/io/mesh_polygons.hpp>
+#include <clearance/io/text_file.hpp>
 
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace clearance::io {
 
@@ -70,7 +73,7 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
   return mesh;
 }
 
-/// `count` triangles after the header.
+/// `count` triangles after the header of 84 bytes.
 inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count, const std::string& file) {
   polygon_mesh mesh;
   if (count > UINT32_MAX / 3) refuse(file, "has more vertices than can be counted");
@@ -91,16 +94,25 @@ inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count,
   return mesh;
 }
 
-/// All triangles of an ASCII or binary STL file, which must be complete.
-inline polygon_mesh read_stl(std::string_view bytes, const std::string& file) {
-  const std::string_view text = without_mark(bytes);
-  const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  const bool says_solid = start.starts_with("solid") || start.starts_with("SOLID") || start.starts_with("Solid");
+/// All triangles of an ASCII or binary STL file, which must be complete. Less than a triangle may follow the last one
+/// of a binary file, with a note, which goes on after the file's name.
+inline polygon_mesh read_stl(std::string_view bytes, const std::string& file, std::vector<std::string>& notes) {
   const std::uint64_t count = bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
   if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count)  // even where the header says "solid"
     return read_binary_stl(bytes, count, file);
-  if (says_solid && bytes.find('\0') == bytes.npos) return read_ascii_stl(text, file);
+  const bool wide = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF") ||
+                    bytes.starts_with(std::string_view("s\0o\0", 4));
+  const std::string converted = wide ? as_utf8(std::string(bytes), file) : std::string();
+  const std::string_view text = wide ? std::string_view(converted) : without_mark(bytes);
+  const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  const bool says_solid = start.starts_with("solid") || start.starts_with("SOLID") || start.starts_with("Solid");
+  if (says_solid && text.find('\0') == text.npos) return read_ascii_stl(text, file);
   if (bytes.size() < 84) refuse(file, "is shorter than the 84 bytes that begin a binary STL file");
+  if (const std::uint64_t more = bytes.size() - 84 - 50 * count;
+      count > 0 && bytes.size() > 84 + 50 * count && more < 50) {
+    notes.push_back("has bytes after its last triangle, fewer than a triangle takes, which are passed over");
+    return read_binary_stl(bytes, count, file);
+  }
   refuse(file, "as a binary STL file of " + std::to_string(count) + " triangles it would have " +
                    std::to_string(84 + 50 * count) + " bytes, but it has " + std::to_string(bytes.size()));
 }

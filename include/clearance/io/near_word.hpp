@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Is a word that a format does not define a misspelt one, or one that would change the answer?
+
+#include <clearance/io/cloud_text.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -46,6 +49,37 @@ inline bool near_word(std::string_view word, std::string_view known) {
   const std::size_t wrong = known.size() > 4 ? 2 : 1;
   return word.size() <= known.size() + wrong && known.size() <= word.size() + wrong &&
          edit_distance(lower_case(word), lower_case(known)) <= wrong;
+}
+
+/// Words that say where something is, or how large: whatever has them as words of a name would change the answer if it
+/// means what it says. One list for all formats.
+inline constexpr std::string_view placing =
+    "pose transform translation rotation position orientation quaternion quat quat_xyzw wxyz";
+inline constexpr std::string_view sizing = "scale scaling unit units offset";
+
+/// The first of the words for which `holds`, or nothing. Blanks separate words.
+template <class Holds>
+std::string_view first_word(std::string_view words, Holds holds) {
+  for (std::string_view word; !(word = take_word(words, " ")).empty();)
+    if (holds(word)) return word;
+  return {};
+}
+inline bool has_word(std::string_view words, std::string_view wanted) {
+  return !first_word(words, [&](std::string_view word) { return word == wanted; }).empty();
+}
+
+/// Why a reader must refuse a name that its format does not define; empty if the name cannot change the answer.
+/// `known`: the format's own words there.
+inline std::string risk_of(std::string_view name, std::string_view known) {
+  const std::string_view meant = first_word(known, [&](std::string_view word) { return near_word(name, word); });
+  if (!meant.empty()) return "is not known (" + std::string(meant) + "?)";
+  std::string small = lower_case(name);
+  for (char& c : small)
+    if (c == '_' || c == '-' || c == '.') c = ' ';
+  const auto changes = [&](std::string_view word) {
+    return has_word(placing, word) || has_word(sizing, word) || has_word("buffer padding margin inflation frame", word);
+  };
+  return first_word(small, changes).empty() ? "" : "is not known, and may change the answer";
 }
 
 }  // namespace clearance::io

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Collects what a reader has to tell its user, each kind of thing in one sentence.
 
 #include <clearance/io/error.hpp>
 
@@ -9,6 +10,11 @@
 #include <vector>
 
 namespace clearance::io {
+
+/// Adds a sentence to notes, if it is not there.
+inline void note_once(std::vector<std::string>& notes, const std::string& sentence) {
+  if (std::ranges::find(notes, sentence) == notes.end()) notes.push_back(sentence);
+}
 
 /// What a reader skips or assumes about a file, to show to a user: one sentence per kind, however often it happened.
 class note_tally {

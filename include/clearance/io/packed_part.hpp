@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A part's spheres as files of any format hold them.
 
 #include <clearance/io/digest.hpp>
 #include <clearance/packing/packing.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Keeps packings in files, so that a mesh is packed only once with the same options.
 
 #include <clearance/io/ist.hpp>
 #include <clearance/io/kept_files.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 // How far a robot's parts may be from where its joints say they are.
 
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/io/kinematics.hpp>
 #include <clearance/motion.hpp>
 #include <clearance/questions/certain_distance.hpp>
@@ -10,9 +11,9 @@ namespace clearance::io {
 
 /// What of a configuration is not certain: one number for each of its values (rad, m), or none for 0.
 struct joint_uncertainty {
-  std::span<const double> errors = {};  ///< By how much each may be wrong: 0 or more.
-  std::span<const double> speeds = {};  ///< How fast each changes, per second, either way.
-  double delay = 0;                     ///< Seconds from when the joints were read to when the answer counts.
+  borrowed<double> errors = {};  ///< By how much each may be wrong: 0 or more.
+  borrowed<double> speeds = {};  ///< How fast each changes, per second, either way.
+  double delay = 0;              ///< Seconds from when the joints were read to when the answer counts.
 };
 
 /// How far each part's solid may be from where configuration `q` has it. Part k is link `links[k]`, with `facts[k]`.

@@ -1,10 +1,106 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// stb_image is a C header that carries its own implementation. Its functions are made static and are put into a
-// namespace of ours, so that a program may use its own copy, with its own settings, before or after this header.
+// Reads depth images from PNG files. stb_image, which unpacks them, is a C header that carries its own implementation.
+// Its functions are made static and are put into a namespace of ours, so that a program may use its own copy, with its
+// own settings, before or after this header.
 
 #include <clearance/io/depth.hpp>
-#include <clearance/io/png_rows.hpp>
+#include <clearance/io/png_check.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clearance::io {
+
+// Turns the unpacked data of a 16-bit grey PNG into pixels. stb_image could, but it checks neither the checksum nor the
+// length of the unpacked data, so damaged data would silently become wrong depths.
+
+/// zlib's checksum of the unpacked data.
+constexpr std::uint32_t adler32(std::string_view bytes) {
+  std::uint32_t a = 1, b = 0;
+  while (!bytes.empty()) {
+    const std::string_view piece = bytes.substr(0, 5552);  // as many as cannot overflow
+    for (const char byte : piece) b += a += std::uint8_t(byte);
+    a %= 65521, b %= 65521;
+    bytes.remove_prefix(piece.size());
+  }
+  return b << 16 | a;
+}
+
+/// The pixels of an image in one interlacing pass: the first one, and the steps to the next.
+struct png_pass {
+  std::size_t x, y, across, down;
+
+  std::size_t width(const png_image& image) const {
+    return x < image.width ? (image.width - x + across - 1) / across : 0;
+  }
+  std::size_t height(const png_image& image) const {
+    return y < image.height ? (image.height - y + down - 1) / down : 0;
+  }
+  /// Every row begins with a byte for its filter. A pass without pixels has no rows.
+  std::size_t bytes(const png_image& image) const { return width(image) ? height(image) * (2 * width(image) + 1) : 0; }
+};
+
+inline std::vector<png_pass> png_passes(const png_image& image) {
+  if (!image.interlaced) return {{0, 0, 1, 1}};
+  return {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+}
+
+inline std::size_t png_raw_bytes(const png_image& image) {
+  std::size_t bytes = 0;
+  for (const png_pass& pass : png_passes(image)) bytes += pass.bytes(image);
+  return bytes;
+}
+
+/// Undoes the filter of a row; `row[-1]` names the filter. `above` is null for the first row.
+inline void png_unfilter(std::uint8_t* row, const std::uint8_t* above, std::size_t bytes, const std::string& file) {
+  const auto each = [&](auto predicted) {
+    for (std::size_t i = 0; i < bytes; ++i) {
+      const int left = i > 1 ? row[i - 2] : 0, up = above ? above[i] : 0, corner = above && i > 1 ? above[i - 2] : 0;
+      row[i] = std::uint8_t(row[i] + predicted(left, up, corner));
+    }
+  };
+  switch (row[-1]) {
+    case 0:
+      return;
+    case 1:
+      return each([](int left, int, int) { return left; });
+    case 2:
+      return each([](int, int up, int) { return up; });
+    case 3:
+      return each([](int left, int up, int) { return (left + up) / 2; });
+    case 4:
+      return each([](int left, int up, int corner) {
+        const int guess = left + up - corner;
+        const int a = std::abs(guess - left), b = std::abs(guess - up), c = std::abs(guess - corner);
+        return a <= b && a <= c ? left : b <= c ? up : corner;
+      });
+    default:
+      refuse(file, "the PNG image is damaged (a row has the unknown filter " + std::to_string(row[-1]) + ")");
+  }
+}
+
+/// The pixels row by row; `raw` holds png_raw_bytes bytes.
+inline std::vector<std::uint16_t> png_pixels(const png_image& image, std::string& raw, const std::string& file) {
+  std::vector<std::uint16_t> pixels(image.width * image.height);
+  auto* at = reinterpret_cast<std::uint8_t*>(raw.data());
+  for (const png_pass& pass : png_passes(image)) {
+    const std::size_t width = pass.width(image), height = width ? pass.height(image) : 0;
+    for (std::size_t y = 0; y < height; ++y, at += 2 * width + 1) {
+      png_unfilter(at + 1, y ? at - 2 * width : nullptr, 2 * width, file);
+      std::uint16_t* to = pixels.data() + (pass.y + y * pass.down) * image.width + pass.x;
+      for (std::size_t x = 0; x < width; ++x) to[x * pass.across] = std::uint16_t(at[2 * x + 1] << 8 | at[2 * x + 2]);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace clearance::io
 
 // Headers that stb_image.h includes come first, so that they do not end up in a namespace.
 #include <assert.h>

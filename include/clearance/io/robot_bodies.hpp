@@ -2,19 +2,62 @@
 #pragma once
 // From the meshes of a robot's links to bodies: closed solids, and spheres that stand for them.
 
-#include <clearance/io/certify.hpp>
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/io/error.hpp>
 #include <clearance/io/note_tally.hpp>
+#include <clearance/io/packed_part.hpp>
 #include <clearance/io/packing_cache.hpp>
+#include <clearance/packing/gap.hpp>
+#include <clearance/solid/mesh_solid.hpp>
 
 #include <tbb/parallel_for.h>
 
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <numbers>
 #include <ranges>
 
 namespace clearance::io {
+
+/// Certified: no point of a sphere is farther from the solid than this, metres; 0 if all lie inside. The surface is
+/// no nearer to a centre than `distance`: a sphere sticks out by its radius less that, or plus that if centred outside.
+template <solid S>
+double excess(const S& s, std::span<const inner_sphere> spheres) {
+  std::vector<double> out(spheres.size());
+  tbb::parallel_for(std::size_t(0), spheres.size(), [&](std::size_t i) {
+    const Eigen::Vector3d c(spheres[i].center.x, spheres[i].center.y, spheres[i].center.z);
+    const double d = s.distance(c), scale = c.norm() + d + spheres[i].radius;
+    out[i] = spheres[i].radius + (s.inside(c) ? -d : d) + 1e-12 * scale;
+  });
+  double most = 0;
+  for (const double e : out) most = std::max(most, e);
+  return most;
+}
+
+/// Spheres from elsewhere, compared with the mesh that they stand for.
+struct certified_spheres {
+  packing spheres;    ///< The spheres unchanged, with their gap to this solid.
+  double excess = 0;  ///< How far they stick out of it, metres.
+
+  /// For make_part: the distance to the spheres may exceed that to the solid by `gap`, and fall below it by `excess`. A
+  /// part's tolerance covers both directions, so the gap is what is missing above it.
+  double part_gap() const { return std::max(0.0, spheres.gap - excess); }
+};
+
+/// Proves the figures of spheres from a file against this solid: gap, fill, excess.
+template <solid S>
+certified_spheres certify(const S& s, packing spheres, double gap_tolerance = 0.01) {
+  const gap_report gap = measure_gap(s, std::span<const inner_sphere>(spheres.spheres), gap_tolerance);
+  spheres.gap = gap.certified, spheres.gap_mean = gap.mean, spheres.gap_p95 = gap.p95;
+  spheres.fill = spheres.tolerance = 0;
+  if constexpr (requires { s.tolerance(); }) spheres.tolerance = s.tolerance();
+  if constexpr (requires { s.volume(); })
+    for (const inner_sphere& ball : spheres.spheres)
+      spheres.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(ball.radius), 3) / s.volume();
+  const double out = excess(s, std::span<const inner_sphere>(spheres.spheres));
+  return {std::move(spheres), out};
+}
 
 /// One rigid body: what its models are built from.
 struct body {
@@ -37,7 +80,7 @@ struct body_options {
   pack_options pack = {};  ///< `count` spheres per body.
   bool sheets = true;      ///< A body without inside gets spheres along its surface; otherwise it is refused.
   packing_cache cache = {};
-  std::string_view maker = "host";  ///< What `make` is, for the cache; a device's makes other spheres than the host's.
+  borrowed_text maker = "host";  ///< What `make` is, for the cache; a device's makes other spheres than the host's.
   std::function<packing(const mesh_solid&, const pack_options&)> make =
       [](const mesh_solid& solid, const pack_options& how) { return clearance::pack(solid, how); };
   std::function<void(const std::string&)> doing = [](const std::string&) {};  ///< Is told what is being done.
@@ -60,12 +103,12 @@ namespace bodies {
 }
 
 /// A part's tolerance covers both directions, so what sticks out of the solid is added to it.
-inline void take(body& made, certified_spheres proven) {
+inline void fill(body& made, certified_spheres proven) {
   made.tolerance += proven.excess;
   made.packed = std::move(proven.spheres);
   made.packed.gap = proven.part_gap();
 }
-inline void take(body& made, const packed_part& given, const body_options& options, body_account& account) {
+inline void fill(body& made, const packed_part& given, const body_options& options, body_account& account) {
   if (given.solid && given.solid == digest_of(made.closed) && std::isfinite(given.spheres.gap)) {
     made.packed = given.spheres;
     made.tolerance = std::max(made.tolerance + made.closed.tolerance, given.tolerance);
@@ -77,7 +120,7 @@ inline void take(body& made, const packed_part& given, const body_options& optio
   account.largest_gap = std::max(account.largest_gap, proven.spheres.gap);
   account.largest_excess = std::max(account.largest_excess, proven.excess);
   ++account.proven;
-  take(made, std::move(proven));
+  fill(made, std::move(proven));
 }
 
 /// If no sphere fits into a body, small ones along its surface stand for it, as far as that is proven.
@@ -88,7 +131,7 @@ inline void line(body& made, const body_options& options) {
   std::vector<inner_sphere> spheres;
   for (const Eigen::Vector3d& p : solid.surface_points(options.pack.count))
     spheres.push_back({{real(p.x()), real(p.y()), real(p.z())}, real(radius)});
-  take(made, certify(solid, uncertified(std::move(spheres))));
+  fill(made, certify(solid, uncertified(std::move(spheres))));
 }
 
 inline std::string mm(double metres) {
@@ -114,6 +157,8 @@ inline void note_insides(const std::vector<body>& all, const std::vector<std::st
                 who);
     if (b.closed.loaded != 0 && b.closed.inside == inside_by::nothing)
       notes.add("encloses nothing, so no point is inside it", who);
+    else if (b.closed.sheets != 0 && b.closed.inside != inside_by::flood)
+      notes.add("has surfaces that enclose nothing, so no point is inside them", who);
     if (is_lined(b))
       notes.add("has no room for inner spheres: small ones along its surface stand for it, to within " + mm(gap), who);
   }
@@ -125,7 +170,13 @@ inline void close(const std::vector<body_source>& sources, std::vector<body>& ma
   options.doing(sources.size() == 1 ? "closing " + sources[0].name
                                     : "closing " + std::to_string(sources.size()) + " links");
   std::vector<std::exception_ptr> wrong(sources.size());
-  for (const body_source& source : sources) made.push_back({source.name, {}, {}, source.tolerance});
+  for (const body_source& source : sources) {
+    if (source.mesh == nullptr) refuse_link(source.name, std::invalid_argument("it has no mesh: it is null"));
+    if (!(source.tolerance >= 0))
+      refuse_link(source.name, std::invalid_argument("its tolerance is " + std::to_string(source.tolerance) +
+                                                     " m, which must be 0 or more"));
+    made.push_back({source.name, {}, {}, source.tolerance});
+  }
   tbb::parallel_for(std::size_t(0), sources.size(), [&](std::size_t k) {
     try {
       made[k].closed = close_mesh(*sources[k].mesh);
@@ -183,7 +234,7 @@ inline std::vector<body> make_bodies(const std::vector<body_source>& sources, co
   bodies::close(sources, made, options);
   for (std::size_t k = 0; k < sources.size(); ++k) try {
       if (sources[k].given)
-        bodies::take(made[k], *sources[k].given, options, account);
+        bodies::fill(made[k], *sources[k].given, options, account);
       else if (!options.spheres)
         continue;
       else if (has_inside(made[k].closed) || !options.sheets)

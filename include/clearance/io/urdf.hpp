@@ -4,29 +4,171 @@
 // without it, and sorts links and joints by name.
 
 #include <clearance/io/kinematics.hpp>
-#include <clearance/io/urdf_link.hpp>
+#include <clearance/io/near_word.hpp>
+#include <clearance/io/note_tally.hpp>
 #include <clearance/io/urdf_words.hpp>
+#include <clearance/io/xml.hpp>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace clearance::io {
 
-/// A file's links in its order, its joints as a tree, and notes about what was skipped.
-struct urdf_file {
-  std::string name;
-  std::vector<urdf_link> links;
-  kinematic_tree tree;
-  note_tally notes;
+struct urdf_box {
+  Eigen::Vector3d size;
+};
+struct urdf_sphere {
+  double radius;
+};
+struct urdf_cylinder {
+  double radius, length;
+};
+/// A cylinder along z with half a ball on either end; `length` does not include them.
+struct urdf_capsule {
+  double radius, length;
+};
+struct urdf_mesh {
+  std::string uri;
+  Eigen::Vector3d scale;
+};
+using urdf_geometry = std::variant<urdf_box, urdf_sphere, urdf_cylinder, urdf_capsule, urdf_mesh>;
+
+/// One visual or collision of a link.
+struct urdf_shape {
+  urdf_geometry geometry;
+  Eigen::Isometry3d origin;  // link-from-shape
+  std::size_t line;          // where its geometry is in the file
+
+  /// Is it a point, a segment or a plate? Then a side, radius or length is 0.
+  bool flat() const {
+    if (const auto* box = std::get_if<urdf_box>(&geometry)) return (box->size.array() == 0).any();
+    if (const auto* sphere = std::get_if<urdf_sphere>(&geometry)) return sphere->radius == 0;
+    if (const auto* cylinder = std::get_if<urdf_cylinder>(&geometry))
+      return cylinder->radius == 0 || cylinder->length == 0;
+    const auto* capsule = std::get_if<urdf_capsule>(&geometry);
+    return capsule && capsule->radius == 0;
+  }
+  /// Does it become triangles that only approximate it?
+  bool round() const {
+    return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry);
+  }
 };
 
-inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
+struct urdf_link {
+  std::string name;
+  std::vector<urdf_shape> collision, visual;
+};
+
+/// A name that can be shown: at most 100 bytes, without control characters.
+inline std::string urdf_name(const xml_place& at, std::string_view attribute = "name") {
+  const std::string& name = at.attribute(attribute);
+  if (name.empty()) at.refuse("has an empty " + std::string(attribute));
+  if (name.size() > 100) at.refuse("has a name of more than 100 bytes: " + io::quoted(name));
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (const auto c = std::uint8_t(name[i]);
+        c < ' ' || c == 0x7f || (c == 0xc2 && i + 1 < name.size() && std::uint8_t(name[i + 1]) < 0xa0))
+      at.refuse("has control characters in its name");
+  return name;
+}
+
+/// The pose in <origin>: fixed axes, roll about x first, then pitch about y, then yaw about z.
+inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const xml_element* element = around.child("origin");
+  if (!element) return pose;
+  const xml_place origin = around.in(*element);
+  if (element->attribute("xyz")) {
+    const auto xyz = origin.numbers<3>("xyz");
+    pose.translation() << xyz[0], xyz[1], xyz[2];
+  }
+  if (element->attribute("rpy")) {
+    const auto rpy = origin.numbers<3>("rpy");
+    pose.linear() =
+        (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+  }
+  return pose;
+}
+
+inline urdf_geometry read_urdf_geometry(const xml_place& around) {
+  const xml_element* only = nullptr;
+  std::size_t count = 0;
+  for (const auto& child : around.element.children)
+    for (const char* known : {"box", "sphere", "cylinder", "capsule", "mesh"})
+      if (child.name == known) only = &child, ++count;
+  if (count == 0 && around.element.children.size() == 1)
+    around.in(around.element.children.front()).refuse("is no shape of URDF");
+  if (count != 1) around.refuse("has " + std::to_string(count) + " shapes, not one");
+  const xml_place shape = around.in(*only);
+  const std::string& kind = shape.element.name;
+  const auto length = [&](double value, const char* what) {
+    if (!(value >= 0)) shape.refuse("has a " + std::string(what) + " below 0");
+    return value;
+  };
+  if (kind == "box") {
+    const auto size = shape.numbers<3>("size");
+    return urdf_box{{length(size[0], "side"), length(size[1], "side"), length(size[2], "side")}};
+  }
+  if (kind == "sphere") {
+    return urdf_sphere{length(shape.numbers<1>("radius")[0], "radius")};
+  }
+  if (kind == "cylinder" || kind == "capsule") {
+    const double radius = length(shape.numbers<1>("radius")[0], "radius");
+    const double along = length(shape.numbers<1>("length")[0], "length");
+    if (kind == "cylinder") return urdf_cylinder{radius, along};
+    return urdf_capsule{radius, along};
+  }
+  urdf_mesh mesh{shape.attribute("filename"), {1, 1, 1}};
+  if (mesh.uri.empty() || mesh.uri.find('\0') != mesh.uri.npos) shape.refuse("has an empty file name");
+  if (shape.element.attribute("scale")) {
+    const auto scale = shape.numbers<3>("scale");
+    mesh.scale << scale[0], scale[1], scale[2];
+  }
+  if ((mesh.scale.array() == 0).any()) shape.refuse("has a scale of 0");
+  return mesh;
+}
+
+inline urdf_link read_urdf_link(const xml_place& at) {
+  urdf_link made{urdf_name(at), {}, {}};
+  const std::string owner = "link " + io::quoted(made.name);
+  const xml_place link{at.element, at.file, owner};
+  for (const auto& child : link.element.children) {
+    if (child.name != "visual" && child.name != "collision") continue;
+    const xml_place shape = link.in(child);
+    const xml_element* geometry = shape.child("geometry");
+    if (!geometry) shape.refuse("has no geometry");
+    (child.name == "visual" ? made.visual : made.collision)
+        .push_back({read_urdf_geometry(shape.in(*geometry)), urdf_origin(shape), geometry->line});
+  }
+  return made;
+}
+
+// The joints of a URDF file. Those of several degrees of freedom become the base pose, or joints of one value each.
+
+/// A joint as a file has it.
+struct urdf_joint {
   joint made;
+  enum class freedom { usual, planar, floating } moves = freedom::usual;  ///< Else `made` is fixed, until it is split.
+  std::size_t line = 0;
+
+  std::string who() const { return "joint " + io::quoted(made.name); }
+};
+
+inline urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
+  urdf_joint read{.made = {}, .line = at.element.line};
+  joint& made = read.made;
   made.name = urdf_name(at);
-  const std::string owner = "joint " + io::quoted(made.name);
+  const std::string owner = read.who();
   const xml_place here{at.element, at.file, owner};
   const auto link = [&](const char* which) {
     const xml_element* element = here.child(which);
@@ -37,9 +179,11 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   made.child = link("child");
   made.origin = urdf_origin(here);
   const std::string& type = here.attribute("type");
-  if (type == "floating") here.refuse("is floating, which is not supported: give the base pose instead");
-  if (type == "planar") here.refuse("is planar, which is not supported");
-  if (type == "continuous")
+  if (type == "floating")
+    read.moves = urdf_joint::freedom::floating;
+  else if (type == "planar")
+    read.moves = urdf_joint::freedom::planar;
+  else if (type == "continuous")
     made.kind = joint_kind::continuous;
   else if (type == "revolute")
     made.kind = joint_kind::revolute;
@@ -47,7 +191,8 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
     made.kind = joint_kind::prismatic;
   else if (type != "fixed")
     here.refuse("has the unknown type " + io::quoted(type));
-  if (const xml_element* axis = here.child("axis"); axis && made.kind != joint_kind::fixed) {
+  const bool planar = read.moves == urdf_joint::freedom::planar;
+  if (const xml_element* axis = here.child("axis"); axis && (made.kind != joint_kind::fixed || planar)) {
     const auto xyz = here.in(*axis).numbers<3>("xyz");
     made.axis << xyz[0], xyz[1], xyz[2];
   }
@@ -62,38 +207,140 @@ inline joint read_urdf_joint(const xml_place& at, note_tally& notes) {
       made.lower = -std::numeric_limits<double>::infinity(), made.upper = std::numeric_limits<double>::infinity();
     }
   }
-  if (const xml_element* mimicked = here.child("mimic"); mimicked && made.kind != joint_kind::fixed) {
+  if (const xml_element* mimicked = here.child("mimic")) {
     const xml_place follow = here.in(*mimicked);
-    made.follows = mimic{urdf_name(follow, "joint"), follow.number_or("multiplier", 1), follow.number_or("offset", 0)};
+    if (read.moves != urdf_joint::freedom::usual) follow.refuse("is for joints of one value, and this one is " + type);
+    if (made.kind == joint_kind::fixed)
+      notes.add("is fixed, and its <mimic> is passed over", owner, mimicked->line);
+    else
+      made.follows =
+          mimic{urdf_name(follow, "joint"), follow.number_or("multiplier", 1), follow.number_or("offset", 0)};
   }
-  return made;
+  return read;
 }
 
 /// If a joint follows a joint of another file, this file does not say where it is, so it takes a value of its own. A
 /// name that nearly matches a joint here is a misspelling, and refused.
-inline void free_followers(std::vector<joint>& joints, const std::vector<const xml_element*>& at,
-                           const std::string& file, note_tally& notes) {
+inline void free_followers(std::vector<urdf_joint>& joints, const std::string& file, note_tally& notes) {
   constexpr std::size_t most = 1000;  // because each is compared with every joint
-  std::set<std::string_view> names;
-  for (const joint& each : joints) names.insert(each.name);
-  for (std::size_t i = 0, freed = 0; i < joints.size(); ++i) {
-    if (!joints[i].follows) continue;
-    const std::string& leader = joints[i].follows->joint;
-    if (names.contains(leader)) continue;
+  std::map<std::string_view, const urdf_joint*> named;
+  for (const urdf_joint& each : joints) named.emplace(each.made.name, &each);
+  std::size_t freed = 0;
+  for (urdf_joint& each : joints) {
+    if (!each.made.follows) continue;
+    const std::string& leader = each.made.follows->joint;
+    if (const auto at = named.find(leader); at != named.end()) {
+      if (at->second->moves != urdf_joint::freedom::usual)
+        refuse(file, each.who() + ": follows " + io::quoted(leader) + ", which has several values", each.line);
+      continue;
+    }
     if (++freed > most)
-      refuse(file, "more than " + std::to_string(most) + " joints follow joints that are not in this file",
-             at[i]->line);
-    const std::string who = "joint " + io::quoted(joints[i].name);
-    for (const joint& other : joints)
-      if (&other != &joints[i] && one_letter_off(other.name, leader))
-        refuse(
-            file,
-            who + ": follows " + io::quoted(leader) + ", which is not in this file (" + io::quoted(other.name) + "?)",
-            at[i]->line);
-    joints[i].follows.reset();
-    notes.add("follows a joint that is not in this file, and takes a value of its own", who, at[i]->line);
+      refuse(file, "more than " + std::to_string(most) + " joints follow joints that are not in this file", each.line);
+    for (const urdf_joint& other : joints)
+      if (&other != &each && one_letter_off(other.made.name, leader))
+        refuse(file,
+               each.who() + ": follows " + io::quoted(leader) + ", which is not in this file (" +
+                   io::quoted(other.made.name) + "?)",
+               each.line);
+    each.made.follows.reset();
+    notes.add("follows a joint that is not in this file, and takes a value of its own", each.who(), each.line);
   }
 }
+
+/// Simulators have a link "world" that files need not have; other links must be there.
+inline void add_world(std::vector<std::string>& links, const std::vector<urdf_joint>& joints, const std::string& file,
+                      note_tally& notes) {
+  std::set<std::string> known(links.begin(), links.end());
+  for (const urdf_joint& each : joints)
+    for (const std::string* name : {&each.made.parent, &each.made.child}) {
+      if (known.contains(*name)) continue;
+      if (name != &each.made.parent || *name != "world")
+        refuse(file, each.who() + ": names the link " + io::quoted(*name) + ", which is not in this file", each.line);
+      notes.add("is the parent of a joint and not in this file, and is taken as the base", "link \"world\"", each.line);
+      known.insert(*name);
+      links.push_back(*name);
+    }
+}
+
+/// Is its parent a root without shapes, from which nothing else hangs?
+inline bool carries_all(const joint& by, const std::vector<urdf_joint>& joints, const std::vector<urdf_link>& links) {
+  for (const urdf_joint& each : joints)
+    if (each.made.child == by.parent || (&each.made != &by && each.made.parent == by.parent)) return false;
+  const auto parent = std::ranges::find(links, by.parent, &urdf_link::name);
+  return parent == links.end() || (parent->collision.empty() && parent->visual.empty());
+}
+
+/// One of the joints that stand for a planar or floating one, without its links: "x", "y" and "z" shift, "roll",
+/// "pitch" and "yaw" turn about x, y and z, as rpy does if yaw comes first.
+inline joint step_of(const joint& whole, const std::string& name) {
+  joint made;
+  made.name = whole.name + "/" + name;
+  made.kind = name.size() == 1 ? joint_kind::prismatic : joint_kind::continuous;
+  made.parent = whole.parent, made.child = whole.child;
+  made.axis = name == "x" || name == "roll"    ? Eigen::Vector3d::UnitX()
+              : name == "y" || name == "pitch" ? Eigen::Vector3d::UnitY()
+                                               : Eigen::Vector3d::UnitZ();
+  return made;
+}
+
+/// The joints of one value that stand for all. A planar or floating joint that alone carries the robot is the base
+/// pose; any other becomes a chain of joints NAME/x, ..., whose links, named so too, are added.
+inline std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::vector<urdf_link>& shapes,
+                                       std::vector<std::string>& links, const std::string& file, note_tally& notes) {
+  using freedom = urdf_joint::freedom;
+  std::vector<joint> made;
+  for (const urdf_joint& each : read) {
+    if (each.moves == freedom::usual) {
+      made.push_back(each.made);
+      continue;
+    }
+    const std::string kind = each.moves == freedom::planar ? "planar" : "floating";
+    if (carries_all(each.made, read, shapes)) {
+      notes.add("is " + kind + " and carries the whole robot, and is taken as the base pose (--base-pose)", each.who(),
+                each.line);
+      made.push_back(each.made);
+      continue;
+    }
+    std::vector<joint> chain;
+    std::string moves;  // in the order of the motions, from the parent on
+    if (each.moves == freedom::floating) {
+      for (const char* name : {"x", "y", "z", "yaw", "pitch", "roll"}) chain.push_back(step_of(each.made, name));
+      moves = "NAME/x, NAME/y, NAME/z (m), NAME/yaw, NAME/pitch, NAME/roll (rad)";
+    } else {
+      const Eigen::Vector3d& normal = each.made.axis;
+      int across = 0;
+      if (normal.cwiseAbs().maxCoeff(&across) == 0 || (normal.array() != 0).count() != 1)
+        refuse(file,
+               each.who() + ": is planar, and its axis is none of x, y and z: turn its <origin> instead, so that it is",
+               each.line);
+      for (const char* name : {"x", "y", "z"})
+        if (name[0] != "xyz"[across]) {
+          chain.push_back(step_of(each.made, name));
+          moves += "NAME/" + std::string(name) + ", ";
+        }
+      chain.push_back(step_of(each.made, "theta"));
+      chain.back().axis = normal;
+      moves = moves.substr(0, moves.size() - 2) + " (m), NAME/theta (rad)";
+    }
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      links.push_back(chain[k].name);
+      chain[k].child = chain[k + 1].parent = links.back();
+    }
+    chain.front().origin = each.made.origin;
+    made.insert(made.end(), chain.begin(), chain.end());
+    notes.add("is " + kind + ", and moves by the joints " + moves + ", which are at 0 unless given", each.who(),
+              each.line);
+  }
+  return made;
+}
+
+/// A file's links in its order, its joints as a tree, and notes about what was skipped.
+struct urdf_file {
+  std::string name;
+  std::vector<urdf_link> links;
+  kinematic_tree tree;
+  note_tally notes;
+};
 
 /// Where the XML declaration begins, if blanks precede it; else 0. XML allows none, but people leave empty lines.
 inline std::size_t declaration_after_blanks(std::string_view text) {
@@ -121,19 +368,19 @@ inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = 
   else
     made.notes.add("has no name", "<robot>", root.line);
   std::vector<std::string> names;
-  std::vector<joint> joints;
-  std::vector<const xml_element*> joints_at;
+  std::vector<urdf_joint> read;
   for (const auto& child : root.children) {
     if (child.name == "link") {
       made.links.push_back(read_urdf_link(robot.in(child)));
       names.push_back(made.links.back().name);
     } else if (child.name == "joint") {
-      joints.push_back(read_urdf_joint(robot.in(child), made.notes));
-      joints_at.push_back(&child);
+      read.push_back(read_urdf_joint(robot.in(child), made.notes));
     }
   }
   if (names.empty()) refuse(file, "is no valid URDF: it has no link");
-  free_followers(joints, joints_at, file, made.notes);
+  free_followers(read, file, made.notes);
+  add_world(names, read, file, made.notes);
+  std::vector<joint> joints = split_joints(read, made.links, names, file, made.notes);
   try {
     made.tree = kinematic_tree(std::move(names), std::move(joints));
   } catch (const std::invalid_argument& error) {

@@ -21,13 +21,11 @@ struct urdf_words {
   std::string_view children, children_unused;      ///< The same for elements. The unused may not contain a shape.
   /// Other elements that are common, whatever they resemble; a bare <geometry> may be in them.
   std::string_view children_noted = {};
-  /// Refused, as attribute or element: they would change the answer if they meant what they say.
+  /// Refused, as attribute or element: they would change the answer if they meant what they say. So are words of sizes,
+  /// everywhere.
   std::string_view watched = {};
   bool places = false;  ///< It says where something is, or how large: refuses whatever resembles its words.
 };
-
-inline constexpr std::string_view placing =
-    "pose transform translation rotation position orientation quaternion quat quat_xyzw wxyz";
 
 inline constexpr urdf_words urdf_vocabulary[] = {
     {"robot", "name", "version", "link joint", "material transmission gazebo sensor ros2_control", "",
@@ -36,7 +34,7 @@ inline constexpr urdf_words urdf_vocabulary[] = {
      "self_collision_checking collision_checking self_filter origin", "include"},
     {"visual", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
     {"collision", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
-    {"geometry", "", "name", "box sphere cylinder capsule mesh", "", "", "origin scale"},
+    {"geometry", "", "name", "box sphere cylinder capsule mesh", "", "", "origin"},
     {"origin", "xyz rpy", "", "", "", "",
      "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw", true},
     {"box", "size", "", "", "", "", "origin", true},
@@ -58,17 +56,6 @@ inline constexpr std::string_view urdf_parts = "link joint visual collision geom
 inline constexpr std::string_view urdf_single = "origin geometry parent child axis limit mimic";
 /// An element with one of these in its name may hide geometry that is meant.
 inline constexpr std::string_view urdf_shapely = "visual collision geometry";
-
-/// The first of the words for which `holds`, or nothing.
-template <class Holds>
-std::string_view first_word(std::string_view words, Holds holds) {
-  for (std::string_view word; !(word = take_word(words, " ")).empty();)
-    if (holds(word)) return word;
-  return {};
-}
-inline bool has_word(std::string_view words, std::string_view wanted) {
-  return !first_word(words, [&](std::string_view word) { return word == wanted; }).empty();
-}
 
 inline std::string_view local_name(std::string_view name) { return name.substr(name.find(':') + 1); }
 
@@ -128,6 +115,11 @@ class urdf_judge {
     }
   }
 
+  static bool watched(const urdf_words& words, std::string_view name) {
+    const std::string small = lower_case(local_name(name));
+    return has_word(words.watched, small) || has_word(sizing, small);
+  }
+
   void attributes(const xml_place& at, const urdf_words& words) {
     for (const auto& [name, value] : at.element.attributes) {
       if (has_word(words.attributes, name) || has_word(words.attributes_unused, name) || name == "xmlns" ||
@@ -139,7 +131,7 @@ class urdf_judge {
         return matters(word) &&
                (!meant_by(name, word).empty() || (words.places && lower_case(name).find(word) != name.npos));
       });
-      if (!meant.empty() || has_word(words.watched, lower_case(local_name(name))))
+      if (!meant.empty() || watched(words, name))
         at.refuse("has an attribute " + io::quoted(name) + ", which is not known" +
                   (meant.empty() ? "" : " (" + std::string(meant) + "?)"));
       if (!of_others(name))
@@ -171,7 +163,7 @@ class urdf_judge {
         meant =
             first_word(urdf_shapely, [&](std::string_view word) { return lower_case(name).find(word) != name.npos; });
       if (!meant.empty()) child.refuse(where + (meant == name ? "" : " (" + std::string(meant) + "?)"));
-      if (has_word(words.watched, lower_case(local_name(name)))) child.refuse(where + ", and may change the answer");
+      if (watched(words, name)) child.refuse(where + ", and may change the answer");
       if (holds_robot(child.element)) child.refuse(where + ", and has a part of a robot in it");
       if (of_others(name) && !shapes) return false;
     }

@@ -2,8 +2,8 @@
 #pragma once
 // Asks for the least distance on one backend, frame after frame.
 
-#include <clearance/backend/plain.hpp>
-#include <clearance/frame/readable.hpp>
+#include <clearance/backends/plain.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/minimum/host_search.hpp>
 #include <clearance/traversal/near_first.hpp>
 

@@ -1,13 +1,72 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// From a record to the answer: its witness, and what is certain.
+// From the best records of blocks to the answer: its witness, and what is certain.
 
-#include <clearance/frame/bracket.hpp>
-#include <clearance/minimum/best.cuh>
-#include <clearance/minimum/witness.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/minimum/resolve.hpp>
+#include <clearance/minimum/seeds.cuh>
 #include <clearance/scan/drops.hpp>
+#include <clearance/scan/pairs.cuh>
 
 namespace clearance::minimum {
+
+// The best candidates that a block has found.
+
+/// Returns the least of a warp's records to all its lanes.
+template <class Record>
+__device__ Record least_of_warp(const Record& r) {
+  using scan::all_lanes;
+  unsigned those = all_lanes;
+  const auto keep = [&those](std::uint32_t value) {
+    const bool in = those >> (threadIdx.x & 31) & 1;
+    const std::uint32_t least = scan::least_of(all_lanes, in ? value : none);
+    those = __ballot_sync(all_lanes, in && value == least);
+  };
+  keep(std::uint32_t(r.key >> 32));
+  if ((those & (those - 1)) != 0) keep(std::uint32_t(r.key)), keep(r.part), keep(r.id);  // a tie of distances
+  const int from = __ffs(int(those)) - 1;
+  Record least;
+  least.key = __shfl_sync(all_lanes, r.key, from);
+  least.part = __shfl_sync(all_lanes, r.part, from);
+  least.id = __shfl_sync(all_lanes, r.id, from);
+  least.place = scan::from_lane(r.place, from);
+  return least;
+}
+
+/// Keeps the better of the block's best and `r`. Improvements are rare (a record process), so a lock costs nothing.
+template <class Tally>
+__device__ void keep_best(typename Tally::block& s, const typename Tally::record& r,
+                          const typename Tally::primitive_type& primitive) {
+  const std::uint32_t slot = Tally::slot(r.part);
+  auto& kept = s.answer.best[slot];
+  for (bool offered = false; !offered;) {
+    if (atomicCAS(&s.answer.lock[slot], 0u, 1u) != 0) continue;
+    __threadfence_block();
+    if (before(r, kept)) {
+      kept = r;
+      if constexpr (!Tally::bound_per_part) s.answer.nearest = primitive;
+    }
+    __threadfence_block();
+    atomicExch(&s.answer.lock[slot], 0u);
+    offered = true;
+  }
+}
+
+/// All lanes of a warp call it. For one minimum the warp agrees on its best first. With one minimum per part, the lanes
+/// that share a part agree, and then the block by an atomic minimum. So few lanes reach the lock.
+template <class Tally>
+__device__ void best_of_warp(typename Tally::block& s, const typename Tally::record& r,
+                             const typename Tally::primitive_type& primitive) {
+  if constexpr (Tally::bound_per_part) {
+    const std::uint32_t mine = std::uint32_t(r.key >> 32);
+    const std::uint32_t least = scan::least_of(__match_any_sync(scan::all_lanes, r.part), mine);
+    if (r.key == no_key || mine != least || r.key > atomicMin(&s.answer.least[r.part], r.key)) return;
+  } else {
+    if (!same(r, least_of_warp(r))) return;
+  }
+  Tally::lower(s, r.part, key_distance(r.key));
+  keep_best<Tally>(s, r, primitive);
+}
 
 /// The point and the primitive of a record.
 template <class Tally>
@@ -88,12 +147,12 @@ __device__ min_distance_result bracket_of(const scan::scan_arguments<Tally>& a, 
   r.distance = key_distance(best.key), r.part = best.part;
   double lower;
   if constexpr (Tally::bound_per_part)
-    lower = certain_distance(
+    lower = frames::certain_distance(
         a.parts, [&](std::uint32_t k) { return key_distance(s.best[k].key); },
         [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, frame.error);
   else
-    lower = certain_distance(r.distance, frame.slop, frame.error);
-  bracket(r, lower, parts::view(best.part).facts.tolerance, certain, frame.error);
+    lower = frames::certain_distance(r.distance, frame.slop, frame.error);
+  frames::bracket(r, lower, parts::view(best.part).facts.tolerance, certain, frame.error);
   return r;
 }
 
@@ -116,7 +175,7 @@ __device__ void write_bracket(const scan::scan_arguments<Tally>& a, min_distance
   min_distance_result& out = *a.answer.result;
   if (r.part == none) out = r;
   scan::count(r, all.dropped, std::uint64_t(a.first) + a.points);
-  allow_for_too_close(r);
+  frames::allow_for_too_close(r);
   // If a pose on the device is not rigid, nothing is known. This state stops a robot.
   if (!scan::memory_of_block<Tally>().rigid) r.state = clearance::state::possible;
   out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The least distance on the CPU, frame after frame. The last frame gives the next one its first bound.
 
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
@@ -15,7 +16,9 @@ template <class PartView>
 class host_search {
  public:
   host_search(const host& on, const model_view<PartView>& model)
-      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {}
+      : workers_(on), model_(model), walk_{stack_need(model.depth, model.width)} {
+    frames::extra_reaches(model.facts, extra_);
+  }
 
   /// One frame; `minima`: one per part, or null. The clouds share one bound, and are numbered in their order.
   template <class Clouds>
@@ -23,9 +26,12 @@ class host_search {
                   part_minimum* minima = nullptr) {
     *result = {}, totals_ = {}, counts_ = {};
     if (const real within = std::exchange(within_, infinity); within < infinity) totals_.best = make_key(within, none);
-    part_best_.assign(minima == nullptr ? 0 : model_.size(), no_key);
-    std::fill_n(minima, part_best_.size(), part_minimum{});
-    const shared_bounds bounds{&totals_, minima == nullptr ? nullptr : part_best_.data()};
+    const std::size_t each = minima == nullptr ? 0 : model_.size();
+    const bool own = each != 0 || !extra_.empty();
+    part_best_.assign(own ? model_.size() : 0, no_key);
+    std::fill_n(minima, each, part_minimum{});
+    const shared_bounds bounds{&totals_, own ? part_best_.data() : nullptr,
+                               minima != nullptr || extra_.empty() ? nullptr : extra_.data()};
     const std::uint64_t seen = frames::for_each_turn(
         frame_, model_.facts, poses, clouds,
         [&](const auto& source, const frames::turn& now) { search(source, now, bounds, result, minima); });
@@ -33,7 +39,7 @@ class host_search {
         model_.parts, std::uint32_t(model_.size()), &counts_, bounds, frame_.error, frame_.slop, seen, result}(0);
     last_.clear();
     if (result->part != none) last_.push_back({result->cloud, result->point});
-    for (std::size_t k = 0; k < part_best_.size(); ++k)
+    for (std::size_t k = 0; k < each; ++k)
       if (minima[k].cloud != none && minima[k].point != result->point)
         last_.push_back({minima[k].cloud, minima[k].point});
   }
@@ -42,7 +48,9 @@ class host_search {
   void forget() { last_.clear(), within_ = infinity; }
 
   /// The next frame alone, which must not ask for minima, need not find anything farther than `within`.
-  void bound_by(real within) { within_ = within; }
+  void bound_by(real within) {
+    if (extra_.empty()) within_ = within;  // else something farther may decide what is certain
+  }
 
   std::size_t parts() const { return model_.size(); }
 
@@ -94,6 +102,7 @@ class host_search {
   totals totals_;
   scan::drop_counts counts_;
   std::vector<distance_key> part_best_;
+  std::vector<real> extra_;  ///< See extra_reaches.
   std::vector<seen_at> last_;
   real within_ = infinity;
 };

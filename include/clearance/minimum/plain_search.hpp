@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The least distance by the paper's loop over points, on any backend and with any traversal.
 
-#include <clearance/frame/clouds.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/minimum/resolve.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/descend.hpp>
 #include <clearance/scan/scan_body.hpp>
 
 namespace clearance::minimum {
-
-/// Refuses a tree that is too deep for a traversal's stack, which would have to drop nodes. Throws
-/// std::invalid_argument.
-template <class Traversal>
-void check_stack(std::uint32_t depth, std::uint32_t width) {
-  if constexpr (bounded_traversal<Traversal>)
-    if (stack_need(depth, width) > Traversal::capacity)
-      throw std::invalid_argument(
-          "clearance: a tree of depth " + std::to_string(depth) + " and width " + std::to_string(width) +
-          " needs a stack of " + std::to_string(stack_need(depth, width)) + " entries, but this traversal has " +
-          std::to_string(Traversal::capacity) + "; give it a larger capacity or use the recursive one");
-}
 
 /// Lowers the bound by the distance of one real pair. `p` is a point less the frame's origin.
 template <class Body>
@@ -47,12 +36,12 @@ struct seed_body {
     std::uint32_t nearest_part = 0;
     real least = infinity;
     for (std::uint32_t k = 0; k < body.part_count; ++k) {
-      if (body.answer.part_best != nullptr) seed(body, p, index, k);  // every part wants a bound of its own
+      if (body.answer.bound_per_part()) seed(body, p, index, k);  // every part wants a bound of its own
       const ball& around = body.places[k].around;
       const real lb = length(p - around.center) - around.radius;
       if (lb < least) least = lb, nearest_part = k;
     }
-    if (body.answer.part_best == nullptr) seed(body, p, index, nearest_part);
+    if (!body.answer.bound_per_part()) seed(body, p, index, nearest_part);
   }
 };
 
@@ -75,10 +64,16 @@ class plain_search {
     const auto parts = std::uint32_t(model_.size());
     auto all = on_.template make_scratch<totals>(1);
     auto counts = on_.template make_scratch<scan::drop_counts>(1);
-    auto part_best = on_.template make_scratch<distance_key>(minima == nullptr ? 0 : parts);
+    std::vector<real> extra;
+    if (minima == nullptr) frames::extra_reaches(model_.facts, extra);
+    auto extras = on_.template make_scratch<real>(extra.size());
+    if (!extra.empty()) on_.stage(std::span<const real>(extra), extras.data());
+    const bool each = minima != nullptr || !extra.empty();
+    auto part_best = on_.template make_scratch<distance_key>(each ? parts : 0);
     fill(all.data(), totals{}, 1), fill(counts.data(), scan::drop_counts{}, 1), fill(result, min_distance_result{}, 1);
-    if (minima != nullptr) fill(part_best.data(), no_key, parts), fill(minima, part_minimum{}, parts);
-    const shared_bounds bounds{all.data(), minima == nullptr ? nullptr : part_best.data()};
+    if (each) fill(part_best.data(), no_key, parts);
+    if (minima != nullptr) fill(minima, part_minimum{}, parts);
+    const shared_bounds bounds{all.data(), each ? part_best.data() : nullptr, extra.empty() ? nullptr : extras.data()};
     frames::cloud_frame frame;
     const std::uint64_t seen = frames::for_each_turn(
         frame, model_.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {

@@ -1,13 +1,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// From the least distance to the whole result: its witness is computed again, then bracket, counts and state.
 
-#include <clearance/frame/bracket.hpp>
-#include <clearance/frame/root_test.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/frames/root_test.hpp>
+#include <clearance/ground/pose.hpp>
 #include <clearance/minimum/shared_bounds.hpp>
-#include <clearance/minimum/witness.hpp>
+#include <clearance/result.hpp>
 #include <clearance/scan/drops.hpp>
+#include <clearance/scan/element.hpp>
+#include <clearance/scan/interior.hpp>
 
 namespace clearance::minimum {
+
+// The witness of a pair: the place on a part that is nearest to a point.
+
+/// The closest primitive itself; of equally close ones the one with the lowest id.
+template <primitive P>
+struct nearest_primitive {
+  using result_type = std::uint32_t;
+
+  real within;
+  std::uint32_t id = none;
+  P primitive = {};
+
+  CLEARANCE_HD real reach() const { return within; }
+  CLEARANCE_HD void offer(std::uint32_t, real) {}
+  CLEARANCE_HD void offer(std::uint32_t i, real distance, const P& p) {
+    if (distance < within || (distance == within && i < id)) within = distance, id = i, primitive = p;
+  }
+  CLEARANCE_HD std::uint32_t result() const { return id; }
+};
+
+/// In world coordinates.
+struct contact {
+  position nearest;
+  vec3 normal;
+};
+
+/// The contact of a primitive with the point q, in the part's frame. `inside` a solid the normal is reversed: the way
+/// out is towards the surface.
+template <primitive P>
+CLEARANCE_HD contact contact_of(const P& primitive, vec3 q, bool inside, const world_transform& world_from_part) {
+  const vec3 away = primitive.normal(q);
+  return {world_from_part(primitive.nearest(q)), world_from_part.turned(inside ? -away : away)};
+}
+
+/// A point's distance to a part, and the part's nearest primitive.
+template <primitive P>
+struct nearest_of_part {
+  real distance;
+  bool inside;
+  nearest_primitive<P> nearest;
+
+  CLEARANCE_HD contact at(vec3 q, const world_transform& world_from_part) const {
+    return contact_of(nearest.primitive, q, inside && nearest.within > 0, world_from_part);
+  }
+};
+
+/// The distance of a point or capsule by the scan's rule: 0 inside, else that of the closest primitive, if it is at
+/// most `within`.
+template <class PartView, class Element, class Traversal>
+CLEARANCE_HD auto evaluate(const PartView& part, const Element& q, real within, const Traversal& walk) {
+  nearest_of_part<typename PartView::hierarchy_type::primitive_type> f{infinity, false, {within}};
+  if constexpr (scan::has_interior<PartView>) {
+    f.inside = part.interior.inside(scan::start_of(q));
+    if (f.inside) f.nearest.within = infinity;
+  }
+  scan::walk_for(walk, part.tree, q, f.nearest);
+  if (f.nearest.id != none) f.distance = f.inside ? 0 : f.nearest.within;
+  return f;
+}
 
 /// Recomputes the witness of a key, in fixed order, if its point is in this cloud. Index `part_count` is the robot's
 /// minimum; lower indices are the parts' own.
@@ -40,7 +103,7 @@ struct resolve_body {
 
   CLEARANCE_HD void operator()(std::size_t i) const {
     if (i < part_count) {
-      if (bounds.part_best != nullptr) own(std::uint32_t(i));
+      if (minima != nullptr) own(std::uint32_t(i));
     } else {
       robots();
     }
@@ -65,7 +128,7 @@ struct resolve_body {
 
   CLEARANCE_HD void robots() const {
     distance_key key = bounds.all->best;
-    if (bounds.part_best != nullptr)
+    if (bounds.bound_per_part())
       for (std::uint32_t k = 0; k < part_count; ++k) key = bounds.part_best[k] < key ? bounds.part_best[k] : key;
     if (!mine(key)) return;
     const std::uint32_t point = key_index(key) - first;
@@ -93,21 +156,21 @@ struct conclude_body {
   const scan::drop_counts* counts;
   shared_bounds bounds;
   frames::float_error error;  ///< The largest of the call.
-  double largest_slop;        ///< Over all parts, because a part without its own minimum has nothing tighter.
+  double slop;                ///< Of all parts alike, if there are no minima of parts.
   std::uint64_t seen;
   min_distance_result* result;
 
   CLEARANCE_HD void operator()(std::size_t) const {
     const distance_key* const best = bounds.part_best;
     const double lower = best == nullptr
-                             ? certain_distance(result->distance, largest_slop, error)
-                             : certain_distance(
+                             ? frames::certain_distance(result->distance, slop, error)
+                             : frames::certain_distance(
                                    part_count, [best](std::uint32_t k) { return key_distance(best[k]); },
                                    [this](std::uint32_t k) -> const part_facts& { return parts[k].facts; }, error);
     scan::count(*result, counts->dropped, seen);
-    bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance, bounds.all->certain != 0,
-            error);
-    allow_for_too_close(*result);
+    frames::bracket(*result, lower, result->part == none ? 0 : parts[result->part].facts.tolerance,
+                    bounds.all->certain != 0, error);
+    frames::allow_for_too_close(*result);
   }
 };
 

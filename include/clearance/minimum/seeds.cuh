@@ -1,12 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A bound before the first test. Any real pair of a point and a primitive gives a valid one, so nothing can be lost.
+// A bound before the first test, from what a device keeps of the last frame or from a few points. Any real pair of a
+// point and a primitive gives a valid one, so nothing can be lost.
 
-#include <clearance/minimum/kept_best.hpp>
+#include <clearance/result.hpp>
+#include <clearance/scan/arguments.hpp>
 #include <clearance/scan/reader.cuh>
-#include <clearance/scan/team.cuh>
+#include <clearance/scan/steps.cuh>
 
 namespace clearance::minimum {
+
+// What a device keeps about a minimum, within a frame and for the next one.
+
+using scan::no_bound;
+
+using scan::record, scan::before, scan::same;
+
+/// A minimum of the last frame, which gives this frame's first bound.
+template <class Record, class Primitive>
+struct witness {
+  Record r;
+  Primitive primitive;
+};
+
+/// Lives in device memory from frame to frame. The last block of a frame resets all but the number of witnesses. If all
+/// parts share a bound, it is in slot 0; otherwise each part has its own slot.
+template <class Record>
+struct device_state {
+  std::uint32_t bound[scan::most_parts];  ///< ordered() upper bounds of this frame, shared by all blocks.
+  Record best[scan::most_parts];          ///< Minima over the finished clouds,
+  distance_key best_key = no_key;         ///< and over the finished blocks, if all parts share a bound.
+  std::uint32_t witnesses = 0;
+  std::uint32_t seeded = 0;  ///< Blocks that have seeded (cold frames only).
+  unsigned long long certain = 0;
+
+  device_state() {
+    for (auto& b : bound) b = no_bound;
+  }
+};
+
+/// The answer without the counts, if a block's best is the best of all.
+struct draft {
+  position at, nearest;
+  vec3 normal;
+  std::uint32_t primitive, part;
+  clearance::state state;
+  real distance, lower, upper;
+};
 
 using scan::all_lanes, scan::fresh, scan::least_of, scan::lower_of, scan::memory_of_block, scan::block_threads,
     scan::warps;
@@ -24,7 +64,7 @@ class last_frame {
 
   /// Reads the points of those minima and their neighbours.
   template <class Source>
-  __device__ void look(const scan::scan_arguments<Tally>& a, const Source& source) {
+  __device__ void seed_from(const scan::scan_arguments<Tally>& a, const Source& source) {
     const std::uint32_t point = its_point(a);
     const bool live =
         a.parts > w_.r.part && witnesses_ > slot() && w_.r.id != none && (!per_part || w_.r.part == slot());

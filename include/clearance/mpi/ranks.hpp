@@ -2,8 +2,8 @@
 #pragma once
 // What ranks tell one another about a question: before it, that it is the same for all; after it, their answers.
 
-#include <clearance/frame/clouds.hpp>
-#include <clearance/query/fields.hpp>
+#include <clearance/frames/clouds.hpp>
+#include <clearance/query/serialise.hpp>
 
 #include <mpi.h>
 

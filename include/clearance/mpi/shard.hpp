@@ -38,6 +38,9 @@ class query<Q, mpi::shard<On>, PartView> : public detail::callable<query<Q, mpi:
         comm_(on.comm),
         facts_(detail::facts_of(robot)),
         query_(on.on, robot, asked, memory...) {}
+  template <owning_robot Robot, class... Memory>
+  query(const mpi::shard<On>&, const Robot&&, const Q&,
+        Memory...) = delete;  // the robot would be gone when it is asked; name it
 
   /// Throws std::invalid_argument if ranks do not ask the same. It also throws what this rank's own part throws; the
   /// other ranks then throw std::runtime_error with that message.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Moves a sphere, step by step, to where a larger one fits.
 
 #include <clearance/solid/vec3d.hpp>
 

@@ -1,12 +1,134 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The certified gap of a packing: how far a place in the solid can be from the spheres. Also what measuring it shares
+// with packing: the steps of a host, and spheres in a backend's memory.
 
+#include <clearance/backends/host.hpp>
+#include <clearance/packing/compass.hpp>
 #include <clearance/packing/grid.hpp>
-#include <clearance/packing/host_steps.hpp>
-#include <clearance/packing/spheres_there.hpp>
+#include <clearance/packing/growing.hpp>
+#include <clearance/packing/room_view.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
+#include <clearance/solid/box_tree.hpp>
 
 namespace clearance {
+
+/// What packing in rounds needs from a host besides a backend. The result does not depend on threads.
+class host_steps {
+ public:
+  static constexpr std::size_t cells = 1u << 20;
+
+  explicit host_steps(const host&) {}
+
+  /// Takes only a few of the largest keys at once, so that little work is wasted. They are kept in a heap. Each call
+  /// adds the new cells, and those chosen last time; after any other change call `forget`.
+  std::size_t next(const double* keys, std::size_t n, std::size_t most, std::uint32_t* out, double& least) {
+    const bool afresh = known_ == 0;
+    const auto add = [&](std::uint32_t i) {
+      if (!(keys[i] > 0)) return;
+      turns_.push_back({keys[i], numbers_++, i});
+      if (!afresh) std::push_heap(turns_.begin(), turns_.end());
+    };
+    for (const std::uint32_t i : chosen_) add(i);
+    for (; known_ < n; ++known_) add(std::uint32_t(known_));
+    if (afresh) std::make_heap(turns_.begin(), turns_.end());
+    chosen_.clear();
+    const double top = turns_.empty() ? 0 : turns_.front().key;
+    least = 0.93 * top;  // a cell that lost little to a new sphere touches it: prefer it to places far from all
+    while (!turns_.empty() && turns_.front().key >= 0.98 * top && chosen_.size() < std::min(most, batch)) {
+      chosen_.push_back(turns_.front().cell);
+      std::pop_heap(turns_.begin(), turns_.end());
+      turns_.pop_back();
+    }
+    std::copy(chosen_.begin(), chosen_.end(), out);
+    return chosen_.size();
+  }
+  void forget() { turns_.clear(), chosen_.clear(), known_ = numbers_ = 0; }
+
+  template <class F>
+  void each(std::size_t n, const F& f) const {
+    tbb::parallel_for(std::size_t(0), n, f);
+  }
+  template <class F>
+  void climbers(std::size_t n, const F& f) const {
+    tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) { f(i, one_lane{}); });
+  }
+  template <class F>
+  std::size_t select(std::size_t n, const F& f, std::uint32_t* out) const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < n; ++i) out[count] = std::uint32_t(i), count += f(i);
+    return count;
+  }
+  template <class F>
+  double largest(std::size_t n, const F& f) const {
+    double most = 0;
+    for (std::size_t i = 0; i < n; ++i) most = std::max(most, f(i));
+    return most;
+  }
+
+ private:
+  static constexpr std::size_t batch = 256;
+  struct turn {
+    double key;
+    std::uint32_t number;  // of two equal keys the earlier one
+    std::uint32_t cell;
+
+    friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
+  };
+
+  std::vector<turn> turns_;            // a heap
+  std::vector<std::uint32_t> chosen_;  // chosen last time; not in the heap
+  std::size_t known_ = 0;
+  std::uint32_t numbers_ = 0;
+};
+
+/// A growing list of spheres, here and in B's memory, and a tree over most of them.
+template <backend B>
+class spheres_there {
+ public:
+  explicit spheres_there(const B& on) : on_(on), there_(on), nodes_(on), order_(on) {}
+
+  std::size_t size() const { return here_.size(); }
+  const std::vector<solid_sphere>& here() const { return here_; }
+
+  template <solid_view V>
+  room_view<V> room_in(const V& solid) {
+    return {solid,
+            there_.data(),
+            std::uint32_t(size()),
+            {nodes_.data(), order_.data(), tree_.view().items, tree_.view().root}};
+  }
+
+  /// Where `n` more can be written in B's memory; `add` makes them count.
+  solid_sphere* reserve(std::size_t n) { return there_.reserve(size() + n, size()) + size(); }
+  void add(std::span<const solid_sphere> written) { here_.insert(here_.end(), written.begin(), written.end()); }
+  void insert(std::span<const solid_sphere> some) {
+    on_.stage(some, reserve(some.size()));
+    add(some);
+  }
+
+  /// Builds the tree anew once more than `most` spheres are not in it.
+  void plant(std::size_t most) {
+    if (size() - tree_.size() <= most) return;
+    std::vector<Eigen::AlignedBox3d> boxes;
+    boxes.reserve(size());
+    for (const solid_sphere& s : here_) {
+      const Eigen::Vector3d c = s.center, r = Eigen::Vector3d::Constant(s.radius);
+      boxes.emplace_back(c - r, c + r);
+    }
+    tree_ = box_tree(boxes);
+    on_.stage(tree_.nodes(), nodes_.reserve(tree_.nodes().size()));
+    on_.stage(tree_.order(), order_.reserve(tree_.order().size()));
+  }
+
+ private:
+  B on_;
+  std::vector<solid_sphere> here_;
+  growing<solid_sphere, B> there_;
+  box_tree tree_;
+  growing<box_pair, B> nodes_;
+  growing<std::uint32_t, B> order_;
+};
 
 struct gap_report {
   double certified = 0;      ///< No point of the solid, surface and interior, is farther from the spheres. Metres.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The cubes in which packing searches a solid, and how deep in it their middles are.
 
-#include <clearance/solid/solid_view.hpp>
+#include <clearance/solid/solid.hpp>
 
 namespace clearance {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Arrays that grow while packing goes on, in the memory of any backend.
 
 #include <clearance/concepts.hpp>
 

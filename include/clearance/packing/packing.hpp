@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// What you ask of packing, and what you get: spheres, and what is certain about them.
 
 #include <clearance/primitive/inner_sphere.hpp>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// How much room there is at a place in a solid, between its surface and the spheres that are there already.
 
 #include <clearance/packing/compass.hpp>
-#include <clearance/solid/box_tree_view.hpp>
-#include <clearance/solid/solid_view.hpp>
+#include <clearance/solid/box_tree.hpp>
+#include <clearance/solid/solid.hpp>
 
 namespace clearance {
 

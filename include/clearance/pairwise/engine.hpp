@@ -2,9 +2,9 @@
 #pragma once
 // Asks questions about pairs of a point and a part on one backend, frame after frame.
 
-#include <clearance/backend/kept_memory.hpp>
-#include <clearance/frame/margins.hpp>
-#include <clearance/frame/readable.hpp>
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/frames/margins.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/pairwise/pairs_on.hpp>
 
 namespace clearance::pairwise {
@@ -23,12 +23,12 @@ struct asked {
   backends::kept_memory<On>& memory;
 
   std::size_t parts() const { return facts.size(); }
-  distance_certainty certain() const { return certainty_of(frame); }
+  distance_certainty certain() const { return certainty_of(frame, facts); }
 
   /// Memory that the backend can write, for `n` values, until the next frame.
   template <class T>
-  T* room(std::size_t n) const {
-    return memory.template room<T>(n).data();
+  T* space(std::size_t n) const {
+    return memory.template space<T>(n).data();
   }
   /// Copies for the backend, as a tuple of pointers; enqueued.
   template <class... Data>
@@ -49,7 +49,7 @@ struct asked {
 /// out)` waits and makes the result of it.
 template <class Q>
 concept pair_question = question<Q> && requires(const Q q, const asked<host>& a, const typename Q::out& to) {
-  { q.room(a) } -> std::same_as<typename Q::out>;
+  { q.space(a) } -> std::same_as<typename Q::out>;
   { q.read(a, to) } -> std::same_as<typename Q::result>;
 };
 
@@ -68,9 +68,9 @@ class passes {
 
   /// Looks at a frame, and frees all rooms. Throws std::invalid_argument for poses that cannot be.
   template <class Clouds>
-  asked<On> look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
+  asked<On> prepare(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     memory.begin();
-    ahead_.look(model.facts, poses, clouds);
+    ahead_.facts_of(model.facts, poses, clouds);
     return last();
   }
   /// The frame that was looked at.
@@ -87,7 +87,7 @@ class passes {
   /// The same; waits.
   template <class Clouds, answer Answer>
   point_counts count(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
-    point_counts* const counts = memory.template room<point_counts>(1).data();
+    point_counts* const counts = memory.template space<point_counts>(1).data();
     enqueue(poses, clouds, answer, counts);
     return on.copy_out(counts, 1)[0];
   }
@@ -108,7 +108,7 @@ class engine {
   template <class Clouds>
   distance_certainty start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q,
                            const typename Q::out& to) {
-    const auto a = passes_.look(poses, clouds);
+    const auto a = passes_.prepare(poses, clouds);
     pass(a, poses, clouds, q, to);
     return a.certain();
   }
@@ -117,8 +117,8 @@ class engine {
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q)
     requires(!requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); })
   {
-    const auto a = passes_.look(poses, clouds);
-    asked_ = &q, to_ = q.room(a);
+    const auto a = passes_.prepare(poses, clouds);
+    asked_ = &q, to_ = q.space(a);
     pass(a, poses, passes_.readable(clouds), q, to_);
   }
   typename Q::result finish() { return asked_->read(passes_.last(), to_); }
@@ -130,8 +130,8 @@ class engine {
     if constexpr (requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); }) {
       const auto& here = passes_.readable(clouds);
       for (std::size_t least = 0;;) {  // once more, if there was not enough room
-        const auto a = passes_.look(poses, clouds);
-        const typename Q::out to = q.room(a, least);
+        const auto a = passes_.prepare(poses, clouds);
+        const typename Q::out to = q.space(a, least);
         pass(a, poses, here, q, to);
         least = q.more(a, to);
         if (least == 0) return q.read(a, to);

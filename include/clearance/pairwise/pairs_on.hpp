@@ -2,9 +2,21 @@
 #pragma once
 // Which scan gives an answer all pairs, by where it runs.
 
-#include <clearance/backend/staged.hpp>
+#include <clearance/concepts.hpp>
 #include <clearance/pairwise/each_pair.hpp>
-#include <clearance/scan/plain_pass.hpp>
+#include <clearance/scan/scan_body.hpp>
+
+namespace clearance {
+
+/// A copy for one call where `on` runs. It does not wait.
+template <backend On, class T>
+auto staged(const On& on, const std::vector<T>& data) {
+  auto there = on.template make_scratch<T>(data.size());
+  on.stage(std::span<const T>(data), there.data());
+  return there;
+}
+
+}  // namespace clearance
 
 namespace clearance::pairwise {
 

@@ -2,13 +2,13 @@
 #pragma once
 // The arguments of a batch's kernels.
 
-#include <clearance/frame/clouds.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/plan/tree_search.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/robot/field.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
-namespace clearance::minimum {
+namespace clearance::plan {
 
 /// What all parts of a configuration have in common, in one cloud.
 struct configuration_facts : frames::frame_facts {
@@ -62,7 +62,9 @@ struct asked_batch {
   ball_bounds* bounds;
   configuration_facts* facts;
   memory_type* all;
-  margin_reach* near;  ///< Only for a question by margins.
+  margin_reach* near;       ///< Only for a question by margins.
+  distance_key* part_best;  ///< Minima of parts, if they decide what is certain, or null;
+  const real* extra;        ///< and how much farther each part is looked for: one per part.
   last_place* last;
   cloud_tree::numbered_point* seeds;
   typename Question::result_type* results;
@@ -72,6 +74,10 @@ struct asked_batch {
   CLEARANCE_HD std::uint32_t first_part(std::uint32_t c) const { return c % robots * part_count; }
   CLEARANCE_HD const PartView* its_parts(std::uint32_t c) const { return parts + first_part(c); }
   CLEARANCE_HD frames::placement* its_places(std::uint32_t c) const { return places + std::size_t(c) * part_count; }
+  CLEARANCE_HD of_parts minima_of(std::uint32_t c) const {
+    if (part_best == nullptr) return {};
+    return {part_best + std::size_t(c) * part_count, extra};
+  }
   /// Where to begin with part `j % part_count`: at the last minimum of `c` and of its neighbours, for j below 3 *
   /// part_count.
   CLEARANCE_HD cloud_tree::numbered_point seed(std::uint32_t c, std::uint32_t j) const {
@@ -88,7 +94,7 @@ struct asked_batch {
             facts[c].origin,
             now.first,
             nullptr,
-            Question::answer(best, near + first),
+            Question::answer(best, near + first, minima_of(c)),
             {}};
   }
 };
@@ -105,4 +111,4 @@ struct batch_arguments : asked_batch<PartView, Question> {
   std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
 };
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

@@ -2,6 +2,7 @@
 #pragma once
 // Many configurations as a caller gives them: poses, or joint vectors of a chain.
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/robot/joint_chain.hpp>
 
 #include <span>
@@ -26,13 +27,10 @@ inline std::size_t count_trajectories(std::size_t all, std::size_t horizon) {
                                 std::to_string(horizon));
   return all / horizon;
 }
-/// Trajectory `i` of them. Throws std::invalid_argument if there is none.
+/// Trajectory `i` of them. Throws std::out_of_range if there is none.
 template <class T>
 std::span<const T> trajectory_of(std::span<const T> all, std::size_t i, std::size_t horizon) {
-  const std::size_t count = count_trajectories(all.size(), horizon);
-  if (i >= count)
-    throw std::invalid_argument("clearance: there is no trajectory " + std::to_string(i) + " of " +
-                                std::to_string(count));
+  check_number("trajectory", i, count_trajectories(all.size(), horizon));
   return all.subspan(i * horizon, horizon);
 }
 /// For each trajectory the configuration that `found(trajectory)` returns.

@@ -1,24 +1,173 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A question about many configurations on a device, from their poses to their results. Each has a block that searches.
 
-#include <clearance/backend/processors.cuh>
-#include <clearance/backend/raised_limits.cuh>
-#include <clearance/backend/side_stream.cuh>
+#include <clearance/backends/device.cuh>
+#include <clearance/backends/own_stream.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
-#include <clearance/frame/clouds.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/minimum/plain_search.hpp>
-#include <clearance/plan/batch_finish.cuh>
+#include <clearance/minimum/resolve.hpp>
+#include <clearance/plan/batch_arguments.hpp>
 #include <clearance/plan/batch_kernel.cuh>
-#include <clearance/plan/batch_place.cuh>
 #include <clearance/plan/field_kernel.cuh>
 #include <clearance/robot/model.hpp>
+#include <clearance/scan/threads.cuh>
 
 #include <algorithm>
 #include <bit>
 #include <memory>
 #include <utility>
 
-namespace clearance::minimum {
+namespace clearance::plan {
+
+/// So many lanes place a configuration. A few for each of several parts were slower than a warp.
+CLEARANCE_HD constexpr std::uint32_t placing_lanes(std::uint32_t parts) { return parts == 1 ? 1 : 32; }
+
+/// Does what a host does with poses before a search, and finds where each search begins. A warp per
+/// configuration, or a lane if that has one part.
+template <class PartView, class Question, class Source>
+__global__ void __launch_bounds__(128)
+    place_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                         const __grid_constant__ Source source) {
+  const std::uint32_t lanes = placing_lanes(a.part_count), c = (blockIdx.x * 128 + threadIdx.x) / lanes,
+                      lane = threadIdx.x % lanes, first = threadIdx.x % 32 - lane;
+  const unsigned team = (scan::all_lanes >> (32 - lanes)) << first;
+  if (c >= a.configurations) return;
+  if (c == 0 && lane == 0) a.left.used[0] = a.left.used[1] = 0;
+  const PartView* const parts = a.its_parts(c);
+  frames::placement* const places = a.its_places(c);
+  bool rigid = true;
+  for (std::uint32_t k = lane; k < a.part_count; k += lanes) {
+    const std::size_t which = std::size_t(c) * a.part_count + k;
+    world_transform pose = a.poses[which];
+    if (!make_rigid(pose)) {
+      rigid = false, pose = {};
+      *static_cast<volatile std::uint32_t*>(a.lost) = 1;
+    }
+    places[k].world_from_part = pose;
+  }
+  rigid = __all_sync(team, rigid);
+  __syncwarp(team);
+  configuration_facts facts(a.world_from_cloud, {0, 0, 0}, a.off);
+  if (lane == 0) {
+    const auto pose = [places](std::uint32_t k) -> const world_transform& { return places[k].world_from_part; };
+    facts.origin = frames::origin_near(frames::middle_of(a.world_from_cloud, pose, a.part_count));
+  }
+  facts.origin = scan::from_lane(facts.origin, int(first), team);
+  for (std::uint32_t k = lane; k < a.part_count; k += lanes) {
+    const frames::placement here =
+        frames::place(parts[k].facts, places[k].world_from_part, a.world_from_cloud, facts.origin, a.off);
+    places[k] = here;
+    a.bounds[std::size_t(c) * a.part_count + k] = ball_bounds(parts[k].facts, here.part_from_cloud);
+  }
+  __syncwarp(team);
+  for (std::uint32_t k = 0; k < a.part_count; ++k) facts.add(parts[k].facts, places[k].error);
+  facts.rigid = rigid;
+  if (a.now.cloud != 0 || a.foreseen) facts.error.widen(a.facts[c].error);  // a bracket covers all clouds
+  if constexpr (Question::by_margin)
+    for (std::uint32_t k = lane; k < a.part_count; k += lanes)
+      a.near[std::size_t(c) * a.part_count + k] = a.question.near(k, parts[k].facts, facts.error);
+  __syncwarp(team);
+  if (lane != 0) return;
+  if (a.now.cloud == 0) {
+    a.all[c] = a.question.start(rigid);
+    if (a.part_best != nullptr)
+      for (std::uint32_t k = 0; k < a.part_count; ++k) a.minima_of(c).best[k] = no_key;
+  }
+  a.facts[c] = facts;
+  if constexpr (!Question::by_margin) {
+    if (a.now.cloud == 0) a.results[c] = {};
+    cloud_tree::numbered_point seed{{0, 0, 0}, none};
+    if (const last_place last = a.last[c]; last.cloud == a.now.cloud && last.point < source.size())
+      if (const sample s = source[last.point]; s.valid()) seed = {s.position, last.point};
+    a.seeds[c] = seed;
+  }
+}
+
+/// Writes the witness of each configuration's minimum, if it is a point of this cloud; after the last cloud, the whole
+/// result. One warp per configuration: each lane tests one part, and all lanes look for the primitive together.
+template <class PartView, class Question, class Source>
+__global__ void __launch_bounds__(128)
+    finish_configurations(const __grid_constant__ batch_arguments<PartView, Question> a,
+                          const __grid_constant__ Source source) {
+  constexpr bool balls = ball_source<Source>;  // each lane walks for the ball, and all find the same
+  using walk_type = std::conditional_t<balls, any_depth, walk_by_warp<typename PartView::hierarchy_type>>;
+  using steps = warp_walk<typename PartView::hierarchy_type>;
+  __shared__ typename steps::node_type pending[4][steps::most];
+  const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
+  if (c >= a.configurations) return;
+  const PartView* const parts = a.its_parts(c);
+  const configuration_facts& facts = a.facts[c];
+  const minimum::shared_bounds bounds{a.all + c, nullptr};
+  min_distance_result mine;
+  walk_type walk{};
+  if constexpr (!balls) walk = {{pending[threadIdx.x / 32]}};
+  const auto of_part = [&](std::uint32_t k) -> minimum::resolve_body<PartView, Source, walk_type> {
+    return {parts + k,   a.its_places(c) + k, 1,      source, facts.origin, facts.world_from_cloud,
+            a.now.first, a.now.cloud,         bounds, walk,   &mine,        nullptr};
+  };
+  for (std::uint32_t first = 0; first < a.part_count && __all_sync(scan::all_lanes, mine.part == none); first += 32) {
+    unsigned those = __ballot_sync(scan::all_lanes, first + lane < a.part_count && of_part(first + lane).may_be_of(0));
+    for (; those != 0 && __all_sync(scan::all_lanes, mine.part == none); those &= those - 1) {
+      const std::uint32_t k = first + std::uint32_t(__ffs(int(those))) - 1;
+      of_part(k)(1);
+      if (mine.part != none) mine.part = k;
+      if (mine.part != none && (!balls || lane == 0)) a.results[c] = mine;
+    }
+  }
+  __syncwarp();
+  if (!a.now.last || lane != 0) return;
+  min_distance_result r = a.results[c];
+  const of_parts its = a.minima_of(c);
+  minimum::conclude_body<PartView>{parts,       a.part_count, a.dropped, {a.all + c, its.best, its.extra},
+                                   facts.error, facts.slop,   a.seen,    &r}(0);
+  frames::beyond(r, a.question.d_max, facts.slop, facts.error);
+  if (!facts.rigid) r.state = state::possible, r.distance = not_a_number, r.lower = 0, r.upper = infinity;
+  if (r.part != none) r.part += a.first_part(c);
+  a.results[c] = r;
+  a.last[c] = {r.cloud, r.point};
+}
+
+/// Writes the state of each configuration after the last cloud, for a question by margins.
+template <class PartView, class Question>
+__global__ void __launch_bounds__(128)
+    tell_configurations(const __grid_constant__ batch_arguments<PartView, Question> a) {
+  const std::uint32_t c = blockIdx.x * 128 + threadIdx.x;
+  if (c >= a.configurations) return;
+  point_counts counts;
+  scan::count(counts, a.dropped->dropped, a.seen);
+  a.results[c] = a.facts[c].rigid
+                     ? Question::told(a.all[c], counts.valid, counts.dropped[int(drop_reason::too_close)] != 0)
+                     : state::possible;
+}
+
+}  // namespace clearance::plan
+
+namespace clearance {
+
+/// What a device has for the blocks of a kernel.
+struct processors_of {
+  unsigned count = 0;
+  std::size_t shared = 0, of_block = 0;  ///< Bytes of shared memory: of a processor, and the most of a block.
+
+  explicit processors_of(const device& on)
+      : count(ask(on, cudaDevAttrMultiProcessorCount)),
+        shared(ask(on, cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
+        of_block(ask(on, cudaDevAttrMaxSharedMemoryPerBlockOptin)) {}
+
+ private:
+  static unsigned ask(const device& on, cudaDeviceAttr what) {
+    int value = 0;
+    check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
+    return unsigned(value);
+  }
+};
+
+}  // namespace clearance
+
+namespace clearance::plan {
 
 /// A question about many configurations on a device, frame after frame: a tree over each cloud, and one block per
 /// configuration that searches it. It never waits. It allocates only for frames larger than any before.
@@ -36,6 +185,7 @@ class device_batch {
         memory_(memory),
         processors_(on),
         beside_(on),
+        extras_(Question::by_margin ? 0 : facts_.size(), on.id, memory),
         counts_(1, on.id, memory),
         left_used_(2, on.id, memory) {
     check_stack<near_first>(model.depth, model.width);
@@ -51,9 +201,10 @@ class device_batch {
   std::uint32_t robots() const { return robots_; }
   const result_type* results() const { return results_.data(); }
   /// The same robot, whose parts may be elsewhere.
-  void take(const model_view<PartView>& robot) {
+  void set_robot(const model_view<PartView>& robot) {
     model_.parts = robot.parts;
     std::ranges::copy(robot.facts, facts_.begin());
+    if constexpr (!Question::by_margin) look_farther();
   }
 
   /// Copies results and point counts, and returns whether all poses were rigid. Waits. Without results it returns true.
@@ -99,7 +250,7 @@ class device_batch {
     if constexpr (Question::by_margin)
       grow(near_, n);
     else
-      grow(seeds_, count), grow(last_, count);
+      grow(seeds_, count), grow(last_, count), grow(part_best_, robots_ > 1 || facts_.size() < 2 ? 0 : n);
     if (n == 0) return;
     fill(poses_.data());
     configurations_ = std::uint32_t(count);
@@ -153,6 +304,12 @@ class device_batch {
     return std::min(each * configurations, std::size_t(1) << 18) + 1024;
   }
 
+  /// Has on the device how much farther each part is looked for.
+  void look_farther() {
+    if (robots_ == 1) frames::extra_reaches(facts_, extra_);
+    if (!extra_.empty()) on_.stage(std::span<const real>(extra_), extras_.data());
+  }
+
   template <point_source S>
   arguments told(const S& source, const frames::turn& now, const Question& question, bool foreseen) const {
     return {{model_.parts,
@@ -172,6 +329,8 @@ class device_batch {
              of_all_.data(),
              all_.data(),
              near_.data(),
+             extra_.empty() ? nullptr : part_best_.data(),
+             extra_.empty() ? nullptr : extras_.data(),
              last_.data(),
              seeds_.data(),
              results_.data(),
@@ -288,6 +447,9 @@ class device_batch {
   device_buffer<configuration_facts> of_all_;
   device_buffer<typename Question::memory_type> all_;
   device_buffer<margin_reach> near_;
+  device_buffer<distance_key> part_best_;
+  device_buffer<real> extras_;
+  std::vector<real> extra_;  ///< See extra_reaches.
   device_buffer<last_place> last_;
   device_buffer<cloud_tree::numbered_point> seeds_;
   device_buffer<result_type> results_;
@@ -297,4 +459,4 @@ class device_batch {
   device_buffer<std::uint32_t> left_used_;
 };
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

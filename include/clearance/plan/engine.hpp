@@ -2,8 +2,8 @@
 #pragma once
 // Asks about many configurations on one backend, frame after frame.
 
-#include <clearance/backend/plain.hpp>
-#include <clearance/frame/readable.hpp>
+#include <clearance/backends/plain.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/plan/configurations.hpp>
 #include <clearance/plan/host_batch.hpp>
 #include <clearance/robot/widened.hpp>
@@ -48,7 +48,7 @@ class engine<host, PartView, Q> {
   const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     auto question = q.checked(search_.parts());
     if constexpr (requires { question.vague; }) question.vague = any_vague(clouds);
-    search_.take(widened_(q.radii));
+    search_.set_robot(widened_(q.radii));
     auto& results = Q::results(result_);
     results.resize(detail::count_configurations(search_.parts(), poses.size()) * (Q::each_part ? search_.parts() : 1));
     detail::named(search_.parts(), poses,
@@ -67,7 +67,7 @@ class engine<host, PartView, Q> {
 
  private:
   widened_model<host, PartView> widened_;
-  minimum::host_batch<PartView, typename Q::searched> search_;
+  host_batch<PartView, typename Q::searched> search_;
   typename Q::result result_;
 };
 

@@ -3,10 +3,9 @@
 // The search of many configurations by the parts' fields, on a device.
 
 #include <clearance/plan/batch_kernel.cuh>
-#include <clearance/plan/batch_walk.cuh>
 #include <clearance/plan/field_search.hpp>
 
-namespace clearance::minimum {
+namespace clearance::plan {
 
 /// Shared memory of a block: a search's stack and what it makes in a round, the points that it has set aside and their
 /// order, and each warp's nodes of an exact walk.
@@ -118,4 +117,4 @@ __global__ void __launch_bounds__(256, 4)
   }
 }
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

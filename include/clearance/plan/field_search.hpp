@@ -5,7 +5,7 @@
 #include <clearance/plan/tree_search.hpp>
 #include <clearance/robot/field.hpp>
 
-namespace clearance::minimum {
+namespace clearance::plan {
 
 /// A node of the tree over the points, or one of its points, together with a part.
 struct field_pair {
@@ -42,7 +42,7 @@ struct field_search {
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
     const std::uint32_t top = tree.size(levels - 1);
     p = {-infinity, i % top, i / top, std::uint8_t(levels), solid};
-    return look(p);
+    return examine(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
     return p.level == 0 ? 1 : tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at);
@@ -51,7 +51,7 @@ struct field_search {
   CLEARANCE_HD bool child(const pair& p, std::uint32_t j, pair& c) const {
     c = p;
     if (p.level != 0) c.at = tree.first_below(p.level - 1, p.at) + j, --c.level;
-    return look(c);
+    return examine(c);
   }
   bool is_small(const pair& p) const { return p.level == 0; }
   void look_at_points(const pair& p) const { visit(tree.point(p.at), p.part); }
@@ -101,7 +101,7 @@ struct field_search {
     return bounds[k].lower(away, around.radius);
   }
   /// Finds a pair's bound. Returns false if nothing in it matters.
-  CLEARANCE_HD bool look(pair& p) const {
+  CLEARANCE_HD bool examine(pair& p) const {
     ball b;
     extent box;
     real wide = 0;
@@ -126,4 +126,4 @@ struct field_search {
   }
 };
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

@@ -1,16 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A question about many configurations on the CPU. One thread searches for each, from where the last search ended.
 
 #include <clearance/cloud_tree/host_tree.hpp>
-#include <clearance/frame/clouds.hpp>
-#include <clearance/minimum/beyond.hpp>
+#include <clearance/frames/bracket.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/minimum/resolve.hpp>
 #include <clearance/plan/field_search.hpp>
-#include <clearance/plan/walk_tree.hpp>
+#include <clearance/plan/tree_search.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
-namespace clearance::minimum {
+#include <algorithm>
+#include <vector>
+
+namespace clearance::plan {
+
+// One host thread walks the trees over points and parts, nearest first.
+
+/// A pair that is still to be opened. The nearest goes first.
+template <class Pair, class Order>
+struct pending_pair {
+  Order order;
+  Pair pair;
+
+  friend bool operator<(const pending_pair& a, const pending_pair& b) { return a.order > b.order; }
+};
+
+/// One configuration against one cloud. `pending` is memory to work with.
+template <class Search>
+void walk_trees(const Search& search,
+                std::vector<pending_pair<typename Search::pair, typename Search::order_type>>& pending) {
+  const auto push = [&](const typename Search::pair& p) {
+    pending.push_back({search.order(p), p});
+    std::push_heap(pending.begin(), pending.end());
+  };
+  pending.clear();
+  typename Search::pair next;
+  for (std::uint32_t i = 0, count = search.starts(); i < count; ++i)
+    if (search.start(i, next)) push(next);
+  while (!pending.empty()) {
+    std::pop_heap(pending.begin(), pending.end());
+    const typename Search::pair top = pending.back().pair;
+    pending.pop_back();
+    if (search.settled(top)) continue;
+    if (search.is_small(top)) {
+      search.look_at_points(top);
+      continue;
+    }
+    for (std::uint32_t j = 0, count = search.children(top); j < count; ++j)
+      if (search.child(top, j, next)) push(next);
+  }
+}
 
 /// A question about many configurations on the CPU, frame after frame: a tree over each cloud, and each configuration
 /// searches all of them. It keeps memory and each configuration's last minimum. The next search begins there, and where
@@ -61,7 +102,7 @@ class host_batch {
   }
 
   /// The same robot, whose parts may be elsewhere.
-  void take(const model_view<PartView>& robot) { model_ = robot; }
+  void set_robot(const model_view<PartView>& robot) { model_ = robot, frames::extra_reaches(robot.facts, extra_); }
   void forget() { last_.clear(); }
   std::size_t parts() const { return model_.size(); }
 
@@ -75,6 +116,7 @@ class host_batch {
     frames::cloud_frame frame;
     std::vector<ball_bounds> bounds;
     std::vector<margin_reach> near;
+    std::vector<distance_key> best;
     std::vector<pending_pair<node_pair<typename PartView::hierarchy_type::node_type>, pair_order<PartView>>> pending;
     std::vector<pending_pair<field_pair, pair_order<PartView>>> by_field;
   };
@@ -93,6 +135,11 @@ class host_batch {
     const auto parts = std::uint32_t(robot.size());
     typename Question::memory_type all = question.start();
     result = {};
+    of_parts minima;
+    if (!Question::by_margin && robots_ == 1 && !extra_.empty()) {
+      own.best.assign(parts, no_key);
+      minima = {own.best.data(), extra_.data()};
+    }
     frames::float_error before;  // margins need the errors of all clouds
     if (Question::by_margin && trees_.size() > 1) {
       frames::for_each_turn(own.frame, robot.facts, poses, clouds, [](const auto&, const frames::turn&) {});
@@ -106,7 +153,7 @@ class host_batch {
             own.near.clear();
             for (std::uint32_t k = 0; k < parts; ++k) own.near.push_back(question.near(k, robot.facts[k], before));
           }
-          const auto answer = question.answer(&all, own.near.data());
+          const auto answer = question.answer(&all, own.near.data(), minima);
           const scan::scan_body<PartView, S, any_depth, typename Question::answer_type> body{
               robot.parts, places.data(), parts, source, own.frame.origin, now.first, nullptr, answer, walk_};
           own.bounds.clear();
@@ -127,7 +174,7 @@ class host_batch {
           else
             walk(tree_search<body_type, tree_type>{body, tree, own.bounds.data()}, own.pending);
           if constexpr (!Question::by_margin)
-            resolve_body<PartView, S, any_depth>{
+            minimum::resolve_body<PartView, S, any_depth>{
                 robot.parts, places.data(), parts,  source, own.frame.origin, own.frame.world_from_cloud,
                 now.first,   now.cloud,     answer, walk_,  &result,          nullptr}(parts);
         });
@@ -136,9 +183,9 @@ class host_batch {
       scan::count(counts, dropped_.dropped, seen_);
       result = question.told(all, counts.valid, counts.dropped[int(drop_reason::too_close)] != 0);
     } else {
-      conclude_body<PartView>{robot.parts,     parts,          &dropped_, {&all, nullptr},
-                              own.frame.error, own.frame.slop, seen_,     &result}(0);
-      if (parts != 0) beyond(result, question.d_max, own.frame.slop, own.frame.error);
+      minimum::conclude_body<PartView>{robot.parts,     parts,          &dropped_, {&all, minima.best, minima.extra},
+                                       own.frame.error, own.frame.slop, seen_,     &result}(0);
+      if (parts != 0) frames::beyond(result, question.d_max, own.frame.slop, own.frame.error);
     }
   }
 
@@ -150,7 +197,8 @@ class host_batch {
   std::uint64_t seen_ = 0;
   std::vector<cloud_tree::host_tree> trees_;
   std::vector<place> last_;
+  std::vector<real> extra_;  ///< See extra_reaches.
   std::vector<room> rooms_;
 };
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

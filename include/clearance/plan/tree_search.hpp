@@ -1,13 +1,128 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// One configuration by branch and bound in two trees at once: the tree over the points, and a part's own.
+// One configuration by branch and bound in two trees at once: the tree over the points, and a part's own. Also what may
+// be asked about it: the least distance, or whether anything is within margins.
 
 #include <clearance/cloud_tree/tree_view.hpp>
-#include <clearance/plan/batch_question.hpp>
+#include <clearance/concepts.hpp>
+#include <clearance/frames/margins.hpp>
+#include <clearance/ground/ordered.hpp>
+#include <clearance/minimum/shared_bounds.hpp>
 #include <clearance/result.hpp>
 #include <clearance/scan/scan_body.hpp>
 
-namespace clearance::minimum {
+namespace clearance::plan {
+
+/// Limits on computed distances: up to `may_be` a point may be within the part's margin; up to `is` it certainly is.
+struct margin_reach {
+  real may_be, is;
+};
+
+/// What is known of a configuration's points and margins. A smaller value is a stronger finding.
+struct margin_word {
+  static constexpr std::uint32_t certain = 0, possible = 1, nothing = 2;
+
+  std::uint32_t found = nothing;
+};
+
+/// A part's visitor. It publishes what it is offered at once.
+struct near_margin {
+  using result_type = bool;
+
+  margin_word* word;
+  margin_reach near;
+
+  CLEARANCE_HD std::uint32_t found() const { return load_relaxed(&word->found); }
+  CLEARANCE_HD real reach() const {
+    const std::uint32_t now = found();
+    return now == margin_word::nothing ? near.may_be : now == margin_word::possible ? near.is : -infinity;
+  }
+  CLEARANCE_HD void offer(std::uint32_t, real distance) const {
+    const std::uint32_t its = distance <= near.is       ? margin_word::certain
+                              : distance <= near.may_be ? margin_word::possible
+                                                        : margin_word::nothing;
+    if (its < found()) lower_word(&word->found, its);
+  }
+  CLEARANCE_HD bool result() const { return found() == margin_word::certain; }
+};
+static_assert(visitor<near_margin>);
+
+/// An answer of `scan_body`: is anything within margins? After a certain hit nothing more is looked at. After a
+/// possible hit, only a certain hit can change the result. So the result does not depend on what was found first.
+struct within_margins {
+  margin_word* word;
+  const margin_reach* margins;  ///< One per part.
+
+  CLEARANCE_HD near_margin visitor(std::uint32_t, std::uint32_t k) const { return {word, margins[k]}; }
+  CLEARANCE_HD void take(std::uint32_t, std::uint32_t, const near_margin&) const {}
+  CLEARANCE_HD real reach(std::uint32_t k) const { return visitor(0, k).reach(); }
+  CLEARANCE_HD real reach_of_pair(std::uint32_t, std::uint32_t k) const { return reach(k); }
+  CLEARANCE_HD void lower(std::uint32_t, std::uint32_t k, real distance) const { visitor(0, k).offer(0, distance); }
+  CLEARANCE_HD bool settled(std::uint32_t, std::uint32_t k) const { return visitor(0, k).result(); }
+  CLEARANCE_HD bool lowest_first(std::uint32_t) const { return false; }
+  CLEARANCE_HD bool take_inside(std::uint32_t, std::uint32_t k) const { return lower(0, k, 0), false; }
+  CLEARANCE_HD void take_certain() const {}
+};
+
+// Questions about many configurations that search a tree over points. Each names an answer for `scan_body` and its
+// initial value.
+
+/// A configuration's minima of parts, if they decide what is certain, and how much farther each is looked for; or null.
+struct of_parts {
+  distance_key* best = nullptr;
+  const real* extra = nullptr;
+};
+
+/// The least distance up to `d_max`, and its witness.
+struct least_question {
+  using answer_type = minimum::shared_bounds;
+  using memory_type = minimum::totals;
+  using result_type = min_distance_result;
+  static constexpr bool by_margin = false;
+
+  real d_max;
+
+  bool limited() const { return d_max < infinity; }
+  CLEARANCE_HD minimum::totals start(bool rigid = true) const { return {make_key(rigid ? d_max : -infinity, none)}; }
+  CLEARANCE_HD static answer_type answer(minimum::totals* all, const margin_reach*, const of_parts& own) {
+    return {all, own.best, own.extra};
+  }
+  /// Adds what another block has found.
+  CLEARANCE_HD static void add(minimum::totals* all, const minimum::totals& found) {
+    lower_to(&all->best, found.best);
+    if (found.certain != 0) add_to(&all->certain, 1);
+  }
+};
+
+/// Is anything nearer than the margins? One margin for all parts, or one per part.
+struct margin_question {
+  using answer_type = within_margins;
+  using memory_type = margin_word;
+  using result_type = state;
+  static constexpr bool by_margin = true;
+
+  const double* margins;
+  std::uint32_t count;
+  bool vague = false;  ///< No point is certainly anywhere.
+
+  bool limited() const { return true; }
+  CLEARANCE_HD margin_word start(bool = true) const { return {}; }
+  CLEARANCE_HD static answer_type answer(margin_word* word, const margin_reach* near, const of_parts&) {
+    return {word, near};
+  }
+  CLEARANCE_HD static void add(margin_word* word, const margin_word& found) { lower_word(&word->found, found.found); }
+  CLEARANCE_HD margin_reach near(std::uint32_t k, const part_facts& facts, const frames::float_error& error) const {
+    const double margin = margins[count == 1 ? 0 : k];
+    return {frames::may_be_within(margin, facts, error), vague ? -infinity : frames::is_within(margin, facts, error)};
+  }
+  /// The state that in_collision reports for `word`.
+  CLEARANCE_HD static state told(const margin_word& word, std::uint64_t valid, bool too_close) {
+    if (valid == 0) return state::no_data;
+    return word.found == margin_word::certain                 ? state::collision
+           : word.found == margin_word::possible || too_close ? state::possible
+                                                              : state::free;
+  }
+};
 
 /// Bounds on a part's distance to the points in a ball, from its distance to the ball's middle: that distance less or
 /// plus the radius, with rounding at both ends.
@@ -74,7 +189,7 @@ struct tree_search {
   CLEARANCE_HD bool start(std::uint32_t i, pair& p) const {
     const std::uint32_t top = tree.size(tree.levels - 1);
     p = {-infinity, i % top, i / top, 0, body.parts[i / top].tree.root(), std::uint8_t(tree.levels), 0, true, solid};
-    return look(p);
+    return examine(p);
   }
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
     return p.by_points ? tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at)
@@ -87,7 +202,7 @@ struct tree_search {
       c.at = tree.first_below(p.level - 1, p.at) + j, --c.level;
     else
       c.node = body.parts[p.part].tree.child(p.node, j), c.depth += c.depth != 255;
-    return look(c);
+    return examine(c);
   }
 
   /// Can bounds not tell a node's points apart? Then it is quicker to look at each point than to open nodes.
@@ -145,7 +260,7 @@ struct tree_search {
 
   /// Finds a pair's bound, and which of its two nodes is to be opened. Returns false if nothing in it matters or all of
   /// it has been looked at.
-  CLEARANCE_HD bool look(pair& p) const {
+  CLEARANCE_HD bool examine(pair& p) const {
     if (p.level == 0) return look_at_point(p, tree.point(p.at));
     ball b = tree.balls[node_of(p)];
     if (!(b.radius >= 0)) return false;  // no point of it counts
@@ -253,4 +368,4 @@ struct tree_search {
   }
 };
 
-}  // namespace clearance::minimum
+}  // namespace clearance::plan

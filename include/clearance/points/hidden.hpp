@@ -44,7 +44,11 @@ struct hidden {
   }
   /// Up to where the room ends. Along the pixel itself: its point may be too near the camera to tell a direction.
   CLEARANCE_HD capsule around(std::size_t i, vec3 start) const {
-    return {start, scaled(room.farthest - start.z, image.way(i)), 0};
+    return {start, scaled(max(room.farthest - start.z, 0), image.way(i)), 0};
+  }
+  /// See `beyond_range`: what a return hides may begin where the room ends. A pixel that is free all the way has none.
+  CLEARANCE_HD real beyond(std::size_t, vec3 start) const {
+    return start.z >= room.farthest ? start.z - room.farthest : infinity;
   }
 
   /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.

@@ -17,10 +17,10 @@ namespace clearance {
 /// bytes that it is given (aligned to 64), or throws and says why. One thread at a time calls it, while others read
 /// what was loaded before.
 template <class C>
-concept loaded_cloud = requires(const C c, std::size_t i, std::byte* room) {
+concept loaded_cloud = requires(const C c, std::size_t i, std::byte* memory) {
   { c.size() } -> std::convertible_to<std::size_t>;
-  { c.room(i) } -> std::convertible_to<std::size_t>;
-  { c.load(i, i, room) } -> point_source;
+  { c.bytes_for(i) } -> std::convertible_to<std::size_t>;
+  { c.load(i, i, memory) } -> point_source;
 };
 template <loaded_cloud C>
 using loaded_source = decltype(std::declval<const C&>().load(0, 0, nullptr));
@@ -41,7 +41,7 @@ struct in_memory {
   in_memory(const S& source) : source(source) {}
 
   std::size_t size() const { return source.size(); }
-  std::size_t room(std::size_t) const { return 0; }
+  std::size_t bytes_for(std::size_t) const { return 0; }
   const S& whole() const { return source; }
   auto load(std::size_t begin, std::size_t end, std::byte*) const { return slice(source, begin, end); }
 };
@@ -63,10 +63,10 @@ struct read_records {
   }
 
   std::size_t size() const { return count; }
-  std::size_t room(std::size_t points) const { return points * record_bytes; }
-  auto load(std::size_t begin, std::size_t end, std::byte* room) const {
-    if (begin != end) read(begin * record_bytes, std::span<std::byte>(room, (end - begin) * record_bytes));
-    return view(static_cast<const std::byte*>(room), end - begin);
+  std::size_t bytes_for(std::size_t points) const { return points * record_bytes; }
+  auto load(std::size_t begin, std::size_t end, std::byte* memory) const {
+    if (begin != end) read(begin * record_bytes, std::span<std::byte>(memory, (end - begin) * record_bytes));
+    return view(static_cast<const std::byte*>(memory), end - begin);
   }
 };
 }  // namespace clearance

@@ -86,6 +86,11 @@ struct masked : detail::masked_types<S> {
     for (std::size_t j = 0; j < surveyed_points; ++j) hidden |= labels[begin + j] == point_label::own;
     return !hidden && source.survey(begin, box, dropped);
   }
+  /// See `rounding_of`.
+  void check() const {
+    if (labels == nullptr && size() != 0)
+      detail::refuse_source("a mask for " + std::to_string(size()) + " points has no labels: they are null");
+  }
   position_error rounding() const { return rounding_of(source); }
 
   std::span<const std::byte> bytes() const
@@ -97,6 +102,12 @@ struct masked : detail::masked_types<S> {
     requires requires(const S s, const std::byte* b) { s.at(b); }
   {
     return masked(source.at(copy), labels);
+  }
+  template <class F>
+  masked with_pieces(const F& f) const
+    requires requires(const S s, const F f) { s.with_pieces(f); }
+  {
+    return masked(source.with_pieces(f), labels);
   }
 };
 

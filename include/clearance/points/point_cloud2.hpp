@@ -2,10 +2,13 @@
 #pragma once
 // A ROS PointCloud2 as a point source, without ROS.
 
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/points/strided_points.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <ranges>
 #include <stdexcept>
 #include <string>
@@ -13,11 +16,26 @@
 
 namespace clearance {
 
+// Where the rows of a ROS message begin: of a PointCloud2, and of an Image.
+
+/// Bytes from one row to the next: `said`, the message's own step, where rows of `row_bytes` fit into the `held` bytes
+/// so. Where they do not, and the message holds its rows and nothing else, they follow one another: drivers write 0,
+/// another message's step, or all bytes of a cloud. No value if nothing fits. Of one row the step is not read.
+inline std::optional<std::uint64_t> row_step(std::uint64_t rows, std::uint64_t row_bytes, std::uint64_t said,
+                                             std::uint64_t held) {
+  if (rows == 0 || row_bytes == 0) return row_bytes;
+  if (held < row_bytes) return std::nullopt;
+  if (rows == 1) return row_bytes;
+  if (said >= row_bytes && said <= (held - row_bytes) / (rows - 1)) return said;
+  if (held % rows == 0 && held / rows == row_bytes) return row_bytes;
+  return std::nullopt;
+}
+
 /// A PointField: where a number lies in a point's bytes, and of which type it is.
 struct point_field {
   static constexpr std::uint8_t float32 = 7, float64 = 8;
 
-  std::string_view name;
+  borrowed_text name;
   std::uint32_t offset = 0;  ///< Bytes.
   std::uint8_t datatype = float32;
   std::uint32_t count = 1;
@@ -25,11 +43,12 @@ struct point_field {
 
 /// What a PointCloud2 says, by the same names, if you have no such message.
 struct point_cloud2 {
-  std::span<const point_field> fields;
+  borrowed<point_field> fields;
   std::uint32_t height = 1, width = 0;
   bool is_bigendian = false;
-  std::uint32_t point_step = 0, row_step = 0;  ///< Bytes. Of one row, row_step is not read.
-  std::span<const std::byte> data;
+  std::uint32_t point_step = 0, row_step = 0;  ///< Bytes. Where row_step cannot be, rows may follow one another
+                                               ///< (`clearance::row_step`).
+  borrowed<std::byte> data;
 };
 
 namespace detail {
@@ -87,16 +106,15 @@ strided_points<Scalar> point_cloud2_view(Message&& message, const point_filter& 
                            ", beyond its point_step of " + std::to_string(step) + " bytes");
     view.offset[k] = field.offset;
   }
-  const std::uint64_t row_step = rows > 1 ? std::uint64_t(message.row_step) : columns * step;
-  if (row_step < columns * step)
-    detail::refuse_cloud("has a row_step of " + std::to_string(row_step) + " bytes, too few for " +
-                         std::to_string(columns) + " points of " + std::to_string(step) + " bytes");
-  const bool empty = rows == 0 || columns == 0;
-  if (!empty && data.size() < (rows - 1) * row_step + columns * step)
+  const std::uint64_t row_bytes = columns * step, said = message.row_step;
+  const auto row_step = clearance::row_step(rows, row_bytes, said, data.size());
+  if (!row_step)
     detail::refuse_cloud("says " + std::to_string(rows) + " x " + std::to_string(columns) + " points of " +
-                         std::to_string(step) + " bytes, but holds " + std::to_string(data.size()) + " bytes");
-  view.data = data.data(), view.count = empty ? 0 : rows * columns, view.step = std::uint32_t(step);
-  if (row_step != columns * step) view.width = std::uint32_t(columns), view.row_step = row_step;
+                         std::to_string(step) + " bytes" +
+                         (rows > 1 ? ", in rows of " + std::to_string(said) + " bytes (row_step)" : "") +
+                         ", but holds " + std::to_string(data.size()) + " bytes");
+  view.data = data.data(), view.count = rows * columns, view.step = std::uint32_t(step);
+  if (*row_step != row_bytes) view.width = std::uint32_t(columns), view.row_step = *row_step;
   view.filter = filter;
   return view;
 }

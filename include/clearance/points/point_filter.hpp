@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Which points of a cloud are valid, and why others are not. Depth images have the same rules for their pixels.
 
 #include <clearance/concepts.hpp>
 
@@ -14,6 +15,12 @@ struct point_filter {
   /// Only finiteness is tested. The same for all points, so a kernel asks once.
   CLEARANCE_HD bool plain() const { return !zero_is_missing && !(nearest > 0) && !(farthest < infinity); }
 
+  /// See `rounding_of`.
+  void check() const {
+    detail::check_range(nearest, farthest, "a cloud");
+    if (!is_finite(sensor)) detail::refuse_source("a cloud's sensor is at a place that is not finite");
+  }
+
   CLEARANCE_HD sample operator()(vec3 p) const {
     if (!is_finite(p)) return {p, drop_reason::not_finite};
     if (plain()) return {p, drop_reason::none};
@@ -23,6 +30,12 @@ struct point_filter {
       if (!(away >= nearest && away <= farthest)) return {p, drop_reason::out_of_range};
     }
     return {p, drop_reason::none};
+  }
+
+  /// How far a position is from the nearest one within the limits, in metres; 0 if it is within.
+  CLEARANCE_HD real beyond(vec3 p) const {
+    const real away = length(p - sensor);
+    return max(max(nearest - away, away - farthest), 0);
   }
 
   /// Filters four points, x y z one after another. Writes their positions and returns their drop reasons, one per byte.
@@ -60,5 +73,28 @@ CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest, b
   if (!(p.z >= nearest && p.z <= farthest)) return {p, drop_reason::out_of_range};
   return {p, drop_reason::none};
 }
+
+/// The same of a depth's limits: how far a position's z is from them, in metres.
+CLEARANCE_HD inline real beyond_depths(vec3 p, real nearest, real farthest) {
+  return max(max(nearest - p.z, p.z - farthest), 0);
+}
+
+namespace detail {
+
+/// What depth images have in common.
+inline void check_image(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t row, real scale,
+                        real nearest, real farthest) {
+  const auto refuse = [&](const std::string& why) {  // text is made only here: a frame's check takes no memory
+    refuse_source("a depth image of " + std::to_string(width) + " x " + std::to_string(height) + " pixels " + why);
+  };
+  if (pixels == nullptr) refuse("has none: they are null");
+  if (row < width && height > 1)
+    refuse("has rows that begin " + std::to_string(row) + " pixels apart, inside one another");
+  if (!(scale > 0 && scale < infinity))
+    refuse("has a scale of " + std::to_string(scale) + " m, which must be above 0 and finite");
+  check_range(nearest, farthest, "a depth image");
+}
+
+}  // namespace detail
 
 }  // namespace clearance

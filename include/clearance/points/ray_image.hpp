@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A depth image of a lens with distortion as a cloud, by a table with the ray of each pixel.
 
 #include <clearance/ground/read_only.hpp>
 #include <clearance/points/point_filter.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace clearance {
 
@@ -39,6 +41,9 @@ struct ray_image {
   CLEARANCE_HD sample operator[](std::size_t i) const {
     return along(rays[i], pixels[row == width ? i : i / width * row + i % width]);
   }
+
+  /// See `beyond_range`.
+  CLEARANCE_HD real beyond(std::size_t, vec3 p) const { return beyond_depths(p, nearest, farthest); }
 
   /// See `seeing_image`.
   CLEARANCE_HD vec3 way(std::size_t i) const { return {rays[i].x, rays[i].y, 1}; }
@@ -80,6 +85,12 @@ struct ray_image {
     return reasons;
   }
 
+  /// See `rounding_of`.
+  void check() const {
+    if (size() == 0) return;
+    detail::check_image(pixels, width, height, row, scale, nearest, farthest);
+    if (rays == nullptr) detail::refuse_source("a ray image has no rays: they are null");
+  }
   /// The roundings of scale, ray and two products.
   position_error rounding() const { return {0, 4 * 0x1.001p-24}; }
 
@@ -106,7 +117,8 @@ struct ray_image {
 static_assert(fetched_source<ray_image<std::uint16_t>> && image_source<ray_image<float>> &&
               fetched_source<ray_image<float>>);
 
-/// Half the diagonal of the widest pixel of a ray table, at z = 1, in host memory.
+/// Half the diagonal of the widest pixel of a ray table, at z = 1, in host memory. In a single row or column a pixel is
+/// taken to be as wide one way as the other; a single ray tells nothing, and has 0, which `unseen` refuses.
 inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t height) {
   double widest = 0;
   const auto apart = [&](std::size_t i, std::size_t j) {
@@ -118,7 +130,9 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
       const std::size_t i = v * width + u;
       apart(i, i + width + 1), apart(i + 1, i + width);
     }
-  return widest;
+  if (width != 1 && height != 1) return widest;
+  for (std::size_t i = 0; i + 1 < width * height; ++i) apart(i, i + 1);
+  return widest * std::numbers::sqrt2;
 }
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #pragma once
 // How far a sensor's point may be from the place that it measured: `k` standard deviations, by kind of sensor.
 
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/point_source.hpp>
 
 #include <stdexcept>
@@ -181,6 +182,9 @@ struct point_radii {
                                     std::to_string(radii[i]) + " m, which must be 0 or more");
   }
 
+  template <owning_range R>
+  explicit point_radii(const R&&) = delete;  // the radii would be gone before they are read; name them
+
   CLEARANCE_HD real operator()(std::size_t i, vec3) const { return radii[i]; }
   /// Infinite if one is none.
   real most(std::size_t begin, const extent&) const {
@@ -193,6 +197,8 @@ struct point_radii {
     return ordered && least >= 0 ? most : infinity;
   }
   void check(std::size_t points) const {
+    if (radii == nullptr && count != 0)
+      throw std::invalid_argument("clearance: there are " + std::to_string(count) + " radii, but they are null");
     if (points != count)
       throw std::invalid_argument("clearance: there are " + std::to_string(points) + " points, but " +
                                   std::to_string(count) + " radii");
@@ -245,6 +251,8 @@ struct any_noise {
     }
   }
   void check(std::size_t points) const {
+    if (kind > noise_kind::radii)
+      throw std::invalid_argument("clearance: there is no kind of noise number " + std::to_string(int(kind)));
     kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
     if (kind == noise_kind::radii) radii.check(points);
   }

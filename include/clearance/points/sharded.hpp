@@ -42,6 +42,11 @@ class sharded {
     const std::size_t k = piece_with(i);
     return piece_[k].shares(i - first_[k], p);
   }
+  /// See `beyond_range`.
+  CLEARANCE_HD real beyond(std::size_t i, vec3 p) const {
+    const std::size_t k = piece_with(i);
+    return beyond_range(piece_[k], i - first_[k], p);
+  }
   /// The largest errors of all pieces.
   position_error rounding() const {
     position_error worst;
@@ -50,6 +55,14 @@ class sharded {
       worst = {std::max(worst.absolute, its.absolute), std::max(worst.relative, its.relative)};
     }
     return worst;
+  }
+
+  /// The same cloud, with `f(piece)`, of the same type, for each piece.
+  template <class F>
+  sharded with_pieces(const F& f) const {
+    sharded same = *this;
+    for (std::size_t k = 0; k < most; ++k) same.piece_[k] = k < pieces_ ? f(piece_[k]) : same.piece_[pieces_ - 1];
+    return same;
   }
 
   std::size_t pieces() const { return pieces_; }
@@ -88,6 +101,19 @@ concept sharded_source = point_source<S> && requires(const S s, std::size_t k) {
   s.first(k);
   s.piece(k);
 };
+
+namespace detail {
+struct same_piece {
+  template <class S>
+  const S& operator()(const S& piece) const {
+    return piece;
+  }
+};
+}  // namespace detail
+
+/// A cloud whose points lie in several pieces of memory.
+template <class S>
+concept source_in_pieces = requires(const S s) { s.with_pieces(detail::same_piece{}); };
 
 /// The number of the first point of piece `k`, if a cloud is split into `n`: sharded clouds into their own pieces,
 /// others into about equal slices. For k = n, the number of points.

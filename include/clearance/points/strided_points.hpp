@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A cloud in records of any layout, such as those of ROS and PCL.
 
 #include <clearance/ground/read_only.hpp>
 #include <clearance/points/point_filter.hpp>
@@ -79,6 +80,18 @@ struct strided_points {
     strided_points moved = *this;
     moved.data = copy;
     return moved;
+  }
+  /// See `rounding_of`. Coordinates may lie beyond a record's step: x, y and z in three arrays are records, too.
+  void check() const {
+    filter.check();
+    if (!is_finite(origin)) detail::refuse_source("a cloud's origin is not finite");
+    if (count == 0) return;
+    const bool apart = count == 1 || (step != 0 && (width == 0 || count <= width || row_step != 0));
+    if (data == nullptr || !apart)
+      detail::refuse_source(data == nullptr
+                                ? "a cloud of " + std::to_string(count) + " records has none: they are null"
+                                : "a cloud's " + std::to_string(count) + " records lie on one another (step " +
+                                      std::to_string(step) + ", row_step " + std::to_string(row_step) + ")");
   }
   /// For a double less the origin: 2^-53, and 2^-24 when it becomes a float.
   position_error rounding() const {

@@ -39,7 +39,8 @@ CLEARANCE_HD vec3 sensor_of(const S& s) {
 
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
 /// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
-/// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then.
+/// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then. A point that
+/// was measured out of the source's range counts if its ball reaches into it.
 ///
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
@@ -61,8 +62,8 @@ struct uncertain {
         spread(rounded_up(clearance::fma(1.5, rounding_of(source).relative, 1 + 0x1p-19))) {
     detail::check_uncertain(of.shift, "a sensor's shift"), detail::check_uncertain(of.turn, "a sensor's turn");
     detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
-    detail::check_uncertain(of.age, "a cloud's age"), detail::check_uncertain(drift, "speed times age");
-    if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
+    detail::check_uncertain(of.age, "a cloud's age");
+    check();
     if constexpr (sharded_source<S>)
       for (std::size_t k = 1; k < source.pieces(); ++k)
         if (sensor_of(source.piece(k)) != sensor_of(source))
@@ -71,9 +72,17 @@ struct uncertain {
                                       "uncertain, then the cloud of them");
   }
 
+  /// See `rounding_of`.
+  void check() const {
+    detail::check_uncertain(shift, "a sensor's shift"), detail::check_uncertain(turn, "a sensor's turn");
+    detail::check_uncertain(drift, "speed times age");
+    if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
+  }
+
   CLEARANCE_HD std::size_t size() const { return source.size(); }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
+    if (s.dropped == drop_reason::out_of_range && may_be_in_range(i, s.position)) s.dropped = drop_reason::none;
     if (!s.valid()) return s;
     if (!bounded(radius(i, s.position))) s.dropped = drop_reason::too_close;
     return s;
@@ -109,7 +118,8 @@ struct uncertain {
   {
     std::uint32_t its[drop_reasons] = {};
     if (!source.survey(begin, box, its)) return false;
-    if (!(box.lower.x <= box.upper.x)) {  // no point
+    if (its[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
+    if (!(box.lower.x <= box.upper.x)) {                         // no point
       widest = 0;
     } else {
       const vec3 sensor = sensor_of(source);
@@ -150,6 +160,14 @@ struct uncertain {
   {
     return source.first(k);
   }
+  template <class F>
+  uncertain with_pieces(const F& f) const
+    requires source_in_pieces<S>
+  {
+    uncertain same = *this;
+    same.source = source.with_pieces(f);
+    return same;
+  }
 
   position_error rounding() const {
     position_error own = rounding_of(source);
@@ -168,6 +186,15 @@ struct uncertain {
     uncertain moved = *this;
     moved.source = source.at(copy);
     return moved;
+  }
+
+ private:
+  /// Is the range within the radius of a point that was measured beyond it? Without a radius it is not.
+  CLEARANCE_HD bool may_be_in_range(std::size_t i, vec3 p) const {
+    const real by = beyond_range(source, i, p);
+    if (!(by < infinity)) return false;
+    const real off = capsule_source<S> ? turn * length(p - sensor_of(source)) : 0, reach = radius(i, p) + off;
+    return !(reach <= 0) && !(reach * (1 + slack) + slack * length(p) < by);
   }
 };
 

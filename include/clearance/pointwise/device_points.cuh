@@ -2,7 +2,10 @@
 #pragma once
 // Each point's own distance on a device. It may remember the nearest primitives from frame to frame.
 
+#include <clearance/backends/device.cuh>
+#include <clearance/frames/readable.cuh>
 #include <clearance/pointwise/each_point.hpp>
+#include <clearance/pointwise/engine.hpp>
 #include <clearance/scan/launch.cuh>
 #include <clearance/scan/packet_kernel.cuh>
 
@@ -212,6 +215,16 @@ class device_points {
   scan::launcher<PartView> launch_;
   device_buffer<remembered<PartView>> last_;
   std::vector<device_buffer<remembered<PartView>>> outgrown_;
+};
+
+/// On a device: the kernel of packets, which remembers the primitive nearest to each point.
+template <>
+struct points_on<device> {
+  template <class PartView>
+  struct kept : device_points<PartView> {
+    kept(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
+        : device_points<PartView>(on, model, memory, true) {}
+  };
 };
 
 }  // namespace clearance::pointwise

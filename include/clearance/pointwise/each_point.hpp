@@ -2,7 +2,7 @@
 #pragma once
 // Each point's own distance: points share nothing, and each has its own bound.
 
-#include <clearance/frame/bracket.hpp>
+#include <clearance/frames/bracket.hpp>
 #include <clearance/visitor/nearest.hpp>
 
 namespace clearance {

@@ -2,10 +2,10 @@
 #pragma once
 // Asks for every point's distance on one backend, frame after frame.
 
-#include <clearance/backend/kept_memory.hpp>
-#include <clearance/frame/readable.hpp>
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/pointwise/host_points.hpp>
-#include <clearance/scan/plain_pass.hpp>
+#include <clearance/scan/scan_body.hpp>
 
 namespace clearance::pointwise {
 
@@ -78,9 +78,9 @@ class engine {
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     size_ = count_points(clouds);
     memory_.begin();
-    to_ = {{memory_.template room<real>(size_).data()}, memory_.template room<point_counts>(1).data()};
+    to_ = {{memory_.template space<real>(size_).data()}, memory_.template space<point_counts>(1).data()};
     if (q.which) {
-      to_.distances.part = memory_.template room<std::uint32_t>(2 * size_).data();
+      to_.distances.part = memory_.template space<std::uint32_t>(2 * size_).data();
       to_.distances.primitive = to_.distances.part + size_;
     }
     certain_ = start(poses, readable_(clouds), q, to_);

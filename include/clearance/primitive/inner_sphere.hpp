@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A sphere inside a solid: many of them together stand for the solid.
 
 #include <clearance/concepts/capsule.hpp>
 

@@ -1,12 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A triangle of a mesh, with distances that are also right for needles and for what has no area.
 
 #include <clearance/concepts/capsule.hpp>
-#include <clearance/ground/segments.hpp>
+#include <clearance/ground/math.hpp>
 
 #include <array>
 
 namespace clearance {
+
+/// Which place of a way (from + t along, 0 <= t <= 1) is nearest to another one: its t. In double, because nearly
+/// parallel ways lose half of the digits. (Lumelsky 1985.)
+CLEARANCE_HD inline real share_nearest(vec3 from, vec3 along, vec3 other_from, vec3 other_along) {
+  struct way {
+    double x, y, z;
+    CLEARANCE_HD double operator*(const way& b) const { return fma(x, b.x, fma(y, b.y, z * b.z)); }
+  };
+  const way e{along.x, along.y, along.z}, u{other_along.x, other_along.y, other_along.z},
+      r{double(from.x) - other_from.x, double(from.y) - other_from.y, double(from.z) - other_from.z};
+  const auto clamped = [](double t) { return t > 0 ? (t < 1 ? t : 1) : 0; };
+  const double ee = e * e, uu = u * u, eu = e * u, er = e * r, ur = u * r;
+  if (!(ee > 0)) return 0;
+  const double square = fma(ee, uu, -(eu * eu));
+  // Ways that are less than 1e-7 from parallel keep their distance within 1e-7 of their length.
+  double t = square > 1e-14 * ee * uu ? clamped(fma(eu, ur, -(er * uu)) / square) : 0;
+  const double s = uu > 0 ? fma(eu, t, ur) / uu : 0;
+  if (!(s > 0)) t = clamped(-er / ee);
+  if (s > 1) t = clamped((eu - er) / ee);
+  return real(t);
+}
 
 /// A flat triangle, slivers and degenerate ones included; the distance is unsigned.
 ///
@@ -29,6 +51,12 @@ struct triangle {
     // Below this ratio the double normal itself is noise; the segments are then exact to 1e-9 of an edge.
     if (!(l > 1e-9 * edges)) return {a, b, c, {0, 0, 0}};
     return {a, b, c, {real(nx / l), real(ny / l), real(nz / l)}};
+  }
+
+  /// Is the normal that of the corners, as `from` makes it? `build` asks, because distances rely on it.
+  bool consistent() const {
+    const vec3 off = unit_normal - from(a, b, c).unit_normal;
+    return absolute(off.x) <= 0x1p-21f && absolute(off.y) <= 0x1p-21f && absolute(off.z) <= 0x1p-21f;
   }
 
   CLEARANCE_HD real distance(vec3 q) const {

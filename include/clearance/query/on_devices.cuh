@@ -2,10 +2,9 @@
 #pragma once
 // Asks on several devices at once: each about a piece of every cloud.
 
-#include <clearance/backend/devices.cuh>
-#include <clearance/backend/kept_pinned.cuh>
-#include <clearance/backend/one_call.cuh>
-#include <clearance/backend/shards.cuh>
+#include <clearance/backends/device_buffer.cuh>
+#include <clearance/backends/devices.cuh>
+#include <clearance/backends/one_call.cuh>
 #include <clearance/query/pieces.hpp>
 #include <clearance/query/query.hpp>
 #include <clearance/robot/replicas.hpp>
@@ -58,13 +57,16 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
       }
     }
   }
+  template <owning_robot Robot, class... Memory>
+  query(const devices&, const Robot&&, const Q&,
+        Memory...) = delete;  // the robot would be gone when it is asked; name it
 
   /// Throws std::invalid_argument also if a cloud is in more or fewer shards than there are devices.
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     const std::size_t n = each_.size();
     for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d&) { check_pieces(cloud, n); });
-    numbers_.look(clouds);
+    numbers_.count(clouds);
     detail::joined_of<Q, PartView> all(q, facts_);
     const auto piece = [&](std::size_t k) { return mapped_clouds(clouds, detail::one_piece{k, n}); };
     const auto place = [&](std::size_t k) { return numbers_.place(clouds, detail::one_piece{k, n}); };

@@ -3,7 +3,7 @@
 // Joins answers about pieces of all clouds: of several devices, chunks, ranks, or up to a deadline.
 
 #include <clearance/concepts.hpp>
-#include <clearance/frame/mapped_clouds.hpp>
+#include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/points/sharded.hpp>
 
 #include <optional>
@@ -72,7 +72,7 @@ class piece_numbers {
  public:
   /// Throws std::invalid_argument if there are too many points.
   template <class Clouds>
-  void look(const Clouds& clouds) {
+  void count(const Clouds& clouds) {
     whole_.clear(), total_ = 0;
     for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
       whole_.push_back(std::uint32_t(source.size())), total_ += source.size();

@@ -2,9 +2,203 @@
 #pragma once
 // Asks any question: once, or prepared for every frame.
 
-#include <clearance/backend/one_call.hpp>
+#include <clearance/backends/one_call.hpp>
+#include <clearance/backends/plain.hpp>
+#include <clearance/frames/clouds.hpp>
 #include <clearance/pairwise/engine.hpp>
-#include <clearance/query/callable.hpp>
+#include <clearance/robot/model.hpp>
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+
+namespace clearance::detail {
+
+// A prepared object used twice at once, which debug builds refuse.
+
+/// Is a prepared object being asked? Copies are other objects. It has a size in release builds, too, so that both kinds
+/// of build agree about objects that they share.
+class in_use {
+ public:
+  in_use() = default;
+  in_use(const in_use&) noexcept {}
+  in_use& operator=(const in_use&) noexcept { return *this; }
+
+  /// One call.
+  class [[nodiscard]] call {
+   public:
+    /// Without NDEBUG: throws std::logic_error if another call has not returned.
+    explicit call([[maybe_unused]] in_use& object) {
+#if !defined(NDEBUG)
+      if (object.now_.exchange(true, std::memory_order_acquire))
+        throw std::logic_error(
+            "clearance: a prepared question is asked while it is being asked; give each thread its own");
+      object_ = &object;
+#endif
+    }
+    call(const call&) = delete;
+    call& operator=(const call&) = delete;
+    ~call() {
+#if !defined(NDEBUG)
+      object_->now_.store(false, std::memory_order_release);
+#endif
+    }
+
+#if !defined(NDEBUG)
+   private:
+    in_use* object_;
+#endif
+  };
+
+ private:
+  std::atomic<bool> now_ = false;
+};
+
+// The arguments of a question as an engine takes them.
+
+/// A robot where one backend runs. A part alone becomes a robot of one part, in memory that this keeps.
+template <class On, class PartView>
+class one_robot {
+  using buffer = typename backend_of_t<On>::template buffer<PartView>;
+
+ public:
+  template <robot Robot>
+  one_robot(const On&, const Robot& robot) : view_(view_of(robot)) {
+    if constexpr (!requires { robot.view(); }) check_by_hand(view_);
+  }
+
+  template <rigid_part Part>
+  one_robot(const On& on, const Part& part) : view_{nullptr, {&part.facts, 1}, 0, 0} {
+    const PartView its = part.view();
+    check(part.facts, 0);
+    own_ = std::make_shared<const buffer>(backend_of(on).copy_in(std::span(&its, 1)));
+    view_ = {own_->data(), view_.facts, its.tree.depth(), its.tree.width()};
+  }
+
+  const model_view<PartView>& view() const { return view_; }
+
+ private:
+  /// A view that no model made: where the host reads parts, it also says whether they are as the view says.
+  static void check_by_hand(const model_view<PartView>& view) {
+    if (view.size() != 0 && view.parts == nullptr)
+      throw std::invalid_argument("clearance: a view of " + std::to_string(view.size()) +
+                                  " parts has none: they are null");
+    if constexpr (std::is_same_v<backend_of_t<On>, host>)
+      for (std::size_t k = 0; k < view.size(); ++k) {
+        const PartView& its = view.parts[k];
+        if (its.tree.depth() > view.depth || its.tree.width() > view.width)
+          throw std::invalid_argument("clearance: the tree of part " + std::to_string(k) +
+                                      " is deeper or wider than the robot's view says");
+        if (!(its.facts == view.facts[k]))
+          throw std::invalid_argument("clearance: the facts of part " + std::to_string(k) +
+                                      " are not those of its view");
+      }
+  }
+
+  model_view<PartView> view_;
+  std::shared_ptr<const buffer> own_;  // an engine looks at it, and so do its copies
+};
+
+/// Throws std::invalid_argument for options that no frame could mend: what the question's optional members
+/// `check(parts)` or `check()` refuse.
+template <class Q>
+void check_options(const Q& q, std::size_t parts) {
+  if constexpr (requires { q.check(parts); })
+    q.check(parts);
+  else if constexpr (requires { q.check(); })
+    q.check();
+}
+
+/// What is known of a robot's parts.
+template <class Robot>
+std::span<const part_facts> facts_of(const Robot& robot) {
+  if constexpr (rigid_part<Robot>)
+    return {&robot.facts, 1};
+  else
+    return view_of(robot).facts;
+}
+
+/// Poses as they may be given: one per part, or for a part its pose.
+template <class Poses>
+std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
+  if constexpr (std::is_same_v<Poses, Eigen::Isometry3d>) {
+    return {&poses, 1};
+  } else {
+    static_assert(std::is_convertible_v<const Poses&, std::span<const Eigen::Isometry3d>>,
+                  "poses are Eigen::Isometry3d, world-from-part, one per part: a vector, an array or a span of them; "
+                  "or one, for one part");
+    return poses;
+  }
+}
+
+/// How every prepared question is asked. `Query` has `run(poses, clouds, question)`, and what else it can.
+template <class Query, class Q>
+class callable {
+ public:
+  /// Blocks until the answer is there. `poses` are world-from-part, one per part; `clouds` is a point source, a
+  /// `placed` one, a range or a tuple of those, or a source and its pose. Points that the backend cannot read are
+  /// copied. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or an option cannot be.
+  template <class Poses, class Clouds>
+  decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) & {
+    static_assert(explain_given<Clouds>());
+    const in_use::call only(used_);
+    return self().run(as_poses(poses), clouds, q);
+  }
+  template <class Poses, class Clouds>
+  decltype(auto) operator()(const Poses& poses, const Clouds& clouds) & {
+    return (*this)(poses, clouds, asked_);
+  }
+  template <class Poses, class S, class Pose>
+    requires(!requires(const Poses& chain) { chain.parts(); })
+  decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose, const Q& q) & {
+    return (*this)(poses, as_clouds(source, pose), q);
+  }
+  template <class Poses, class S, class Pose>
+    requires(!requires(const Poses& chain) { chain.parts(); })
+  decltype(auto) operator()(const Poses& poses, const S& source, const Pose& pose) & {
+    return (*this)(poses, as_clouds(source, pose), asked_);
+  }
+  /// For questions about many configurations: the same for joint vectors of a chain, one after another.
+  template <class Chain, class Clouds>
+    requires requires(const Chain& chain) { chain.parts(); }
+  decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) & {
+    const in_use::call only(used_);
+    return self().run_chain(chain, joints, clouds, q);
+  }
+  template <class Chain, class Clouds>
+    requires requires(const Chain& chain) { chain.parts(); }
+  decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds) & {
+    return (*this)(chain, joints, clouds, asked_);
+  }
+  /// A temporary query takes its result with it, so this returns a copy.
+  template <class... Arguments>
+  auto operator()(const Arguments&... arguments) && {
+    return static_cast<callable&>(*this)(arguments...);
+  }
+  /// On a device: about the configurations that were placed.
+  template <class Clouds>
+  decltype(auto) operator()(const Clouds& clouds, const Q& q) & {
+    const in_use::call only(used_);
+    return self().run_placed(clouds, q);
+  }
+  template <class Clouds>
+  decltype(auto) operator()(const Clouds& clouds) & {
+    return (*this)(clouds, asked_);
+  }
+
+ protected:
+  explicit callable(const Q& q) : asked_(q) {}
+  const Q& asked() const { return asked_; }
+  in_use& used() { return used_; }
+
+ private:
+  Query& self() { return static_cast<Query&>(*this); }
+
+  Q asked_;
+  in_use used_;
+};
+
+}  // namespace clearance::detail
 
 namespace clearance {
 
@@ -52,8 +246,9 @@ consteval bool explain_asked() {
 
 /// A prepared question: make it once for a robot, and ask it in every frame with new poses and points, or with other
 /// options. It keeps its memory. What it remembers of the last frame only makes it faster. Use one object from one
-/// stream and one thread (two at once: a debug build throws std::logic_error); the robot must outlive it. On a device,
-/// `memory` may be a std::pmr::memory_resource* that hands out device memory.
+/// stream and one thread (two at once: a debug build throws std::logic_error); the robot must outlive it and its
+/// copies. Options that no frame could mend are refused when it is made (std::invalid_argument). On a device, `memory`
+/// may be a std::pmr::memory_resource* that hands out device memory.
 template <question Q, class On, class PartView>
 class query : detail::one_robot<On, PartView>,
               public detail::engine_of<Q, On, PartView>::type,
@@ -68,7 +263,10 @@ class query : detail::one_robot<On, PartView>,
   query(const On& on, const Robot& robot, const Q& asked, Memory... memory)
       : robot_type(on, robot), engine(on, robot_type::view(), memory...), callable(asked) {
     static_assert(detail::explain_asked<On, Robot, Q>());
+    detail::check_options(asked, robot_type::view().size());
   }
+  template <owning_robot Robot, class... Memory>
+  query(const On&, const Robot&&, const Q&, Memory...) = delete;  // the robot would be gone when it is asked; name it
 
   /// Enqueues a frame and does not wait. Clouds must be readable where it runs; they, and all that `to` names, must
   /// stay until it is done. On a device, a graph that captures this keeps the current poses and options.

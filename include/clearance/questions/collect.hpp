@@ -18,8 +18,8 @@ struct collect {
   };
 
   template <class Asked>
-  out room(const Asked& a) const {
-    return {a.template room<point_counts>(1)};
+  out space(const Asked& a) const {
+    return {a.template space<point_counts>(1)};
   }
   template <class Asked>
   Answer prepare(const Asked&, const out&) const {

@@ -7,7 +7,7 @@
 #include <clearance/query/query.hpp>
 
 #if defined(__CUDACC__)
-#include <clearance/pointwise/device_engine.cuh>
+#include <clearance/pointwise/device_points.cuh>
 #endif
 
 namespace clearance {
@@ -19,7 +19,7 @@ struct point_distances {
   std::vector<std::uint32_t> part,
       primitive;  ///< If `which` is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
   point_counts counts;
-  distance_certainty certain;
+  distance_certainty certain;  ///< Of each distance: another part than the nearest may be nearer in truth.
 };
 
 /// Every point's distance to the nearest part (elsewhere d_max is called max_dist, or activation distance). A prepared
@@ -39,6 +39,7 @@ struct distances {
   template <class PartView>
   using joined = pointwise::joined_points<distances>;
 
+  void check() const { limit(); }
   /// The farthest computed distance that counts.
   real limit() const { return frames::largest_within(d_max); }
 };

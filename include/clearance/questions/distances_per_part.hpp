@@ -2,6 +2,7 @@
 #pragma once
 // How far is every point from every part?
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/pointwise/joined_points.hpp>
 #include <clearance/query/query.hpp>
 
@@ -13,9 +14,19 @@ struct part_distances {
                                ///< where there is no point.
   std::size_t points = 0;
   point_counts counts;
-  distance_certainty certain;
+  distance_certainty certain;  ///< Of each distance, by its part.
+  std::size_t parts = 0;
 
-  std::span<const real> of(std::size_t part) const { return std::span(distance).subspan(part * points, points); }
+  /// Those of a part. Throws std::out_of_range if there is no such part.
+  std::span<const real> of(std::size_t part) const& {
+    check_number("part", part, parts);
+    return std::span(distance).subspan(part * points, points);
+  }
+  /// A copy: a temporary result is gone before a view of it is read.
+  std::vector<real> of(std::size_t part) const&& {
+    const auto its = of(part);
+    return {its.begin(), its.end()};
+  }
 };
 
 namespace pairwise {
@@ -51,18 +62,17 @@ struct nothing_written {
 template <class Q>
 class joined_rows {
  public:
-  joined_rows(const Q&, std::span<const part_facts> facts) : parts_(facts.size()) {}
+  joined_rows(const Q&, std::span<const part_facts> facts) { all_.parts = facts.size(); }
 
   void add(const typename Q::result& piece, const piece_place& place) {
-    pointwise::place_entries(piece.distance, place, all_.distance, parts_);
-    all_.points = parts_ == 0 ? 0 : all_.distance.size() / parts_;
+    pointwise::place_entries(piece.distance, place, all_.distance, all_.parts);
+    all_.points = all_.parts == 0 ? 0 : all_.distance.size() / all_.parts;
     all_.counts.add(piece.counts);
     all_.certain.widen(piece.certain);
   }
   typename Q::result result() { return std::move(all_); }
 
  private:
-  std::size_t parts_;
   typename Q::result all_;
 };
 
@@ -81,9 +91,11 @@ struct distances_per_part {
   template <class PartView>
   using joined = pairwise::joined_rows<distances_per_part>;
 
+  void check() const { frames::largest_within(d_max); }
+
   template <class Asked>
-  out room(const Asked& a) const {
-    return {a.template room<real>(a.points * a.parts()), a.template room<point_counts>(1)};
+  out space(const Asked& a) const {
+    return {a.template space<real>(a.points * a.parts()), a.template space<point_counts>(1)};
   }
   template <class Asked, class Clouds>
   pairwise::written prepare(const Asked& a, const out& to, const Clouds& clouds) const {
@@ -98,7 +110,8 @@ struct distances_per_part {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    return {a.copy_out(from.distance, a.points * a.parts()), a.points, a.copy_out(from.counts, 1)[0], a.certain()};
+    return {a.copy_out(from.distance, a.points * a.parts()), a.points, a.copy_out(from.counts, 1)[0], a.certain(),
+            a.parts()};
   }
 };
 

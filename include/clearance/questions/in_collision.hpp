@@ -83,15 +83,17 @@ struct in_collision {
   using result = collision_result;
   using out = collision_result*;  ///< In memory that the backend writes.
 
+  void check(std::size_t parts) const { frames::check_margins(margins, parts), check_radii(radii, parts); }
+
   template <class Asked>
-  out room(const Asked& a) const {
-    return a.template room<collision_result>(1);
+  out space(const Asked& a) const {
+    return a.template space<collision_result>(1);
   }
   static point_counts* counts_of(const out& to) { return &to->counts; }
   template <class Asked, class Clouds>
   pairwise::first_within prepare(const Asked& a, const out&, const Clouds& clouds) const {
     const std::size_t parts = a.parts();
-    frames::check_margins(margins, parts), check_radii(radii, parts);
+    check(parts);
     a.reaches.resize(2 * parts);
     for (std::size_t k = 0; k < parts; ++k) {
       const double margin = margins[margins.size() == 1 ? 0 : k];

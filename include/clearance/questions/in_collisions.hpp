@@ -23,9 +23,14 @@ struct in_collisions_result {
 
   /// If the configurations are several trajectories, [batch, horizon]: the states of trajectory `i`, and the first of
   /// each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of
-  /// `horizon` configurations, or if there is no trajectory i.
-  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const {
+  /// `horizon` configurations, std::out_of_range if there is no trajectory i.
+  std::span<const state> trajectory(std::size_t i, std::size_t horizon) const& {
     return detail::trajectory_of(std::span(of), i, horizon);
+  }
+  /// A copy: a temporary result is gone before a view of it is read.
+  std::vector<state> trajectory(std::size_t i, std::size_t horizon) const&& {
+    const auto its = trajectory(i, horizon);
+    return {its.begin(), its.end()};
   }
   std::vector<std::size_t> first_not_free(std::size_t horizon) const {
     return detail::first_of_each(std::span(of), horizon, first_of);
@@ -44,11 +49,12 @@ struct in_collisions {
   std::vector<double> radii = {};       ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = in_collisions_result;
-  using searched = minimum::margin_question;
+  using searched = plan::margin_question;
   static constexpr bool each_part = false;
   template <class On, class PartView>
   using engine = plan::engine<On, PartView, in_collisions>;
 
+  void check(std::size_t parts) const { in_collision{margins, radii}.check(parts); }
   searched checked(std::size_t parts) const {
     frames::check_margins(margins, parts);
     return {margins.data(), std::uint32_t(margins.size())};

@@ -3,7 +3,7 @@
 // How far is a robot from everything that its sensors see?
 
 #include <clearance/minimum/engine.hpp>
-#include <clearance/minimum/of_pieces.hpp>
+#include <clearance/minimum/merge.hpp>
 #include <clearance/query/query.hpp>
 
 #include <ranges>
@@ -90,7 +90,7 @@ struct min_distance_per_part_result {
   std::vector<part_minimum> parts;
 };
 
-/// The least distance of the robot, and of each part: each has its own bound, and `all.lower` is tighter.
+/// The least distance of the robot, and of each part: each has its own bound.
 struct min_distance_per_part {
   using result = min_distance_per_part_result;
   struct out {

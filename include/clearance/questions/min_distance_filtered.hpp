@@ -2,7 +2,7 @@
 #pragma once
 // How far is a robot from all points that are not its own? Two questions, one after another.
 
-#include <clearance/frame/masked_clouds.hpp>
+#include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/self_filter.hpp>
 

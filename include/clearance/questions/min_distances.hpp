@@ -3,7 +3,7 @@
 // How far are many configurations of one robot, such as the waypoints of a trajectory, from everything that its sensors
 // see?
 
-#include <clearance/minimum/beyond.hpp>
+#include <clearance/frames/bracket.hpp>
 #include <clearance/plan/engine.hpp>
 #include <clearance/questions/min_distance.hpp>
 
@@ -28,10 +28,15 @@ struct min_distances_result {
   }
 
   /// If the configurations are several trajectories, [batch, horizon]: the results of trajectory `i`. Throws
-  /// std::invalid_argument if they are not whole trajectories of `horizon` configurations, or if there is no trajectory
-  /// i.
-  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const {
+  /// std::invalid_argument if they are not whole trajectories of `horizon` configurations, std::out_of_range if there
+  /// is no trajectory i.
+  std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const& {
     return detail::trajectory_of(std::span(of), i, horizon);
+  }
+  /// A copy: a temporary result is gone before a view of it is read.
+  std::vector<min_distance_result> trajectory(std::size_t i, std::size_t horizon) const&& {
+    const auto its = trajectory(i, horizon);
+    return {its.begin(), its.end()};
   }
   /// `first_below` of each trajectory, counted from its beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
@@ -90,17 +95,17 @@ class joined_minima {
 /// in_collision.
 struct min_distances {
   double d_max = infinity;  ///< Metres. For a configuration farther away only that fact is reported, much faster.
-  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each. The bracket
-                                   ///< has the greatest.
+  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = min_distances_result;
-  using searched = minimum::least_question;
+  using searched = plan::least_question;
   static constexpr bool each_part = false;  ///< One result per configuration.
   template <class On, class PartView>
   using engine = plan::engine<On, PartView, min_distances>;
   template <class PartView>
   using joined = plan::joined_minima<min_distances, PartView>;
 
+  void check(std::size_t parts) const { checked(parts), check_radii(radii, parts); }
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
   static std::vector<min_distance_result>& results(result& all) { return all.of; }
   static void take_counts(result&, const point_counts&, std::size_t) {}
@@ -113,9 +118,9 @@ struct min_distances {
                const Clouds& clouds, result& all, std::size_t c) const {
     const real most = frames::largest_within(d_max);
     frames::frame_ahead ahead;
-    const auto& frame = ahead.look(model.facts, poses, clouds);
+    const auto& frame = ahead.facts_of(model.facts, poses, clouds);
     all.of[c] = ask(on, model, poses, clouds, min_distance{});
-    minimum::cut(all.of[c], most, frame.slop, frame.error);
+    frames::cut(all.of[c], most, frame.slop, frame.error);
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 // How far is each part of many configurations of one robot from everything that its sensors see?
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/questions/min_distances.hpp>
 
 namespace clearance {
@@ -13,7 +14,16 @@ struct min_distances_per_part_result {
   std::size_t parts = 0;
 
   std::size_t size() const { return parts == 0 ? 0 : all.size() / parts; }
-  std::span<const min_distance_result> of(std::size_t c) const { return std::span(all).subspan(c * parts, parts); }
+  /// Those of a configuration. Throws std::out_of_range if there is no such configuration.
+  std::span<const min_distance_result> of(std::size_t c) const& {
+    check_number("configuration", c, size());
+    return std::span(all).subspan(c * parts, parts);
+  }
+  /// A copy: a temporary result is gone before a view of it is read.
+  std::vector<min_distance_result> of(std::size_t c) const&& {
+    const auto its = of(c);
+    return {its.begin(), its.end()};
+  }
 };
 
 /// The least distance of each part of each configuration, otherwise as min_distances. Each part has its own bound, as a
@@ -23,13 +33,14 @@ struct min_distances_per_part {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = min_distances_per_part_result;
-  using searched = minimum::least_question;
+  using searched = plan::least_question;
   static constexpr bool each_part = true;
   template <class On, class PartView>
   using engine = plan::engine<On, PartView, min_distances_per_part>;
   template <class PartView>
   using joined = plan::joined_minima<min_distances_per_part, PartView>;
 
+  void check(std::size_t parts) const { checked(parts), check_radii(radii, parts); }
   searched checked(std::size_t parts) const { return min_distances{d_max}.checked(parts); }
   static std::vector<min_distance_result>& results(result& r) { return r.all; }
   static void take_counts(result& r, const point_counts&, std::size_t parts) { r.parts = parts; }

@@ -37,12 +37,12 @@ struct nearest_k {
       q.check();
       using pairwise::nearest_bins;
       const real d_max = frames::largest_within(q.d_max);
-      const auto a = passes_.look(poses, clouds);
+      const auto a = passes_.prepare(poses, clouds);
       const std::size_t parts = a.parts(), bins = parts * nearest_bins::bins;
-      auto* const counts = a.template room<std::uint32_t>(bins);
-      auto* const windows = a.template room<pairwise::nearest_window>(parts);
-      auto* const bounds = a.template room<std::uint32_t>(parts);
-      auto* const reaches = a.template room<real>(parts);
+      auto* const counts = a.template space<std::uint32_t>(bins);
+      auto* const windows = a.template space<pairwise::nearest_window>(parts);
+      auto* const bounds = a.template space<std::uint32_t>(parts);
+      auto* const reaches = a.template space<real>(parts);
       pairwise::sample_bounds(passes_, poses, clouds, a.points,
                               nearest_bins{counts, windows, nearest_bins::shift_of(0)}, bounds, std::uint32_t(q.k),
                               d_max, to.counts);
@@ -69,6 +69,7 @@ struct nearest_k {
   void check() const {
     if (k == 0 || k > pairwise::most_listed)
       throw std::invalid_argument("clearance: k is " + std::to_string(k) + "; it must be 1 to 2^20");
+    frames::largest_within(d_max);
   }
 
   static void place_in_whole(result& r, const piece_place& place) {

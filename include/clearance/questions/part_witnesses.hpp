@@ -2,8 +2,9 @@
 #pragma once
 // Where every part's least distance is, after min_distance_per_part.
 
-#include <clearance/backend/apart.hpp>
-#include <clearance/backend/few_values.hpp>
+#include <clearance/backends/apart.hpp>
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/query/query.hpp>
 #include <clearance/traversal/any_depth.hpp>
@@ -50,7 +51,7 @@ struct witness_body {
 /// The witness of every part's minimum. On a device it is one kernel per cloud, after min_distance_per_part in a stream
 /// or graph. Refused: neither as many minima as parts, and one that is not of these poses and clouds.
 struct part_witnesses {
-  std::span<const part_minimum> minima;  ///< As min_distance_per_part gives them.
+  borrowed<part_minimum> minima;  ///< As min_distance_per_part gives them.
 
   using result = std::vector<part_witness>;
   /// `minima`, which `enqueue` reads instead, and `witnesses`, one each per part, in memory that the backend reads and
@@ -70,15 +71,15 @@ class part_witnesses::engine {
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : on_(on), model_(model), memory_(on, from...), readable_(on, from...) {
-    if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model_.depth, model_.width);
+    if constexpr (requires { typename On::own_scan; }) check_stack<near_first>(model_.depth, model_.width);
   }
 
   template <class Clouds>
   result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses& q) {
     frames::check_room(model_.size(), q.minima.size());
     memory_.begin();
-    part_witness* const found = memory_.template room<part_witness>(q.minima.size()).data();
-    look(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found);
+    part_witness* const found = memory_.template space<part_witness>(q.minima.size()).data();
+    evaluate_all(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found);
     auto all = on_.copy_out(found, q.minima.size());
     for (std::size_t k = 0; k < all.size(); ++k)
       if (q.minima[k].cloud != none && all[k].part == none)
@@ -90,13 +91,13 @@ class part_witnesses::engine {
   template <class Clouds>
   void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses&, const out& to) {
     memory_.begin();
-    look(poses, clouds, to.minima, to.witnesses);
+    evaluate_all(poses, clouds, to.minima, to.witnesses);
   }
 
  private:
   template <class Clouds>
-  void look(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
-            part_witness* witnesses) {
+  void evaluate_all(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
+                    part_witness* witnesses) {
     const any_depth walk{stack_need(model_.depth, model_.width)};
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {

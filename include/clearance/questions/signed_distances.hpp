@@ -2,7 +2,7 @@
 #pragma once
 // How far is every point from closed meshes, and how deep in them?
 
-#include <clearance/frame/root_test.hpp>
+#include <clearance/frames/root_test.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/questions/distances.hpp>
 
@@ -54,6 +54,7 @@ struct signed_distances {
   template <class PartView>
   static constexpr bool about = scan::has_interior<PartView>;
 
+  void check() const { limit(); }
   real limit() const {
     if (!(d_max >= 0))
       throw std::invalid_argument("clearance: d_max of signed distances is " + std::to_string(d_max) +
@@ -66,7 +67,7 @@ struct signed_distances {
         about<PartView>,
         "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "
         "in `distances`");
-    if constexpr (requires { typename On::own_scan; }) minimum::check_stack<near_first>(model.depth, model.width);
+    if constexpr (requires { typename On::own_scan; }) check_stack<near_first>(model.depth, model.width);
   }
   template <class On, class PartView, class Clouds>
   static void after(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,

@@ -2,32 +2,185 @@
 #pragma once
 // How far is a robot from what no camera sees?
 
-#include <clearance/backend/kept_memory.hpp>
-#include <clearance/minimum/cameras.hpp>
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/ground/borrowed.hpp>
+#include <clearance/minimum/merge.hpp>
+#include <clearance/points/depth_image.hpp>
 #include <clearance/points/hidden.hpp>
-#include <clearance/points/pinhole_view.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/robot/widened.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <span>
 #include <variant>
+#include <vector>
 
 namespace clearance {
+
+// What several cameras hide together, part by part.
+
+/// A part, and where the room that no camera sees is nearest to it: `cloud` is the camera, `point` the pixel, `at` lies
+/// on the pixel's way. Metres.
+struct unseen_part : part_witness {
+  real lower = 0;        ///< At least so far away is all that no camera sees and some camera hides.
+  real out_of_view = 0;  ///< Which share of the ball around the part no camera shows. Nothing is said about that. NaN
+                         ///< if a ray image may show the rest.
+  real to_edge = not_a_number;  ///< If `edges` are asked for: the ball around the part is at least so far from all
+                                ///< that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+};
+
+/// `all`: as a min_distance_result. If the robot reaches into what is hidden its state is `unknown`. `seen` counts
+/// pixels, `valid` those that hide room. With several cameras a place is hidden only if no camera sees it: `lower`
+/// holds for that, `distance` is an estimate, and `upper` is not known (infinite).
+struct unseen_result {
+  min_distance_result all;
+  std::vector<unseen_part> parts;
+  min_distance_result own_shadow;  ///< What pixels of the robot's own points (`masked`) hide, of all cameras together.
+};
+
+namespace minimum {
+
+/// What one camera says about each part. It is kept from frame to frame.
+struct camera_finding {
+  min_distance_result all;
+  std::vector<part_witness> nearest;
+  std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
+  std::vector<double> from_edge;
+  std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
+  bool tells_shown, vague;
+
+  void clear() { nearest.clear(), lower.clear(), own.clear(), from_edge.clear(), shown.clear(); }
+};
+
+/// A place is unseen only if no camera sees it. So what camera j hides near a part is also hidden by every other
+/// camera, or by the robot before it, or out of its view.
+inline void join(std::span<const camera_finding> cameras, real farthest, std::span<const double> radii, bool edges,
+                 std::size_t parts, unseen_result& r) {
+  if (cameras.empty()) return;
+  if (r.own_shadow.state == state::collision) r.own_shadow.state = state::unknown;
+  r.all = cameras[0].all;
+  for (const camera_finding& other : cameras.subspan(1)) {
+    const min_distance_result& more = other.all;
+    r.all.seen += more.seen, r.all.valid += more.valid;
+    for (int i = 0; i < drop_reasons; ++i) r.all.dropped[i] += more.dropped[i];
+  }
+  // A pixel without a direction shows and hides nothing. If no other is there, nothing is known.
+  const bool blind = r.all.seen == r.all.dropped[int(drop_reason::not_finite)];
+  double lower = infinity;
+  const unseen_part* least = nullptr;
+  r.parts.resize(parts);
+  for (std::size_t k = 0; k < parts; ++k) {
+    unseen_part& part = r.parts[k];
+    double its_lower = infinity;
+    std::uint64_t shown = 0;
+    bool tells_shown = true;
+    double edge = -1;
+    for (const camera_finding& j : cameras) {
+      double distance = j.nearest[k].distance, at_least = j.lower[k];
+      for (const camera_finding& i : cameras)
+        if (&i != &j) {
+          distance = std::max(distance, std::min<double>(i.nearest[k].distance, std::max(i.from_edge[k], 0.0)));
+          at_least = std::max(at_least, std::min({i.lower[k], i.own[k], i.from_edge[k]}));
+        }
+      if (distance < part.distance) static_cast<part_witness&>(part) = j.nearest[k], part.distance = real(distance);
+      its_lower = std::min(its_lower, at_least);
+      shown |= j.shown[k], tells_shown &= j.tells_shown;
+      if (j.tells_shown) edge = std::max({edge, j.from_edge[k], 0.0});
+    }
+    if (edges && edge >= 0) part.to_edge = rounded_down(edge);
+    part.lower = its_lower > 0 && !blind ? rounded_down(its_lower) : 0;
+    const int out_of_view = 64 - std::popcount(shown);
+    part.out_of_view = tells_shown || out_of_view == 0 ? real(out_of_view) / 64 : not_a_number;
+    lower = std::min(lower, its_lower);
+    if (least == nullptr || part.distance < least->distance) least = &part;
+  }
+  if (blind || least == nullptr) return;
+  min_distance_result& all = r.all;
+  if (cameras.size() > 1 || all.part == none) {
+    all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
+    all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
+    all.distance = least->distance, all.upper = infinity;
+  }
+  all.lower = lower > 0 ? rounded_down(lower) : 0;
+  const bool vague = std::ranges::any_of(cameras, &camera_finding::vague);
+  if (vague) all.upper = infinity;
+  const double radius = all.part == none ? 0 : radius_of(radii, all.part);
+  const bool reaches = all.distance + radius <= 4 * slack * farthest;  // up to rounding
+  all.state = all.lower > 0 ? state::free : reaches && !vague ? state::unknown : state::possible;
+}
+
+}  // namespace minimum
+
+// What a camera can see at all, whatever is there.
+
+/// The room that a pinhole image shows, between two depths (metres of z): a pyramid without its tip.
+struct pinhole_view {
+  double left, right, top, bottom;  ///< The image's edges at z = 1, pixels' own halves included.
+  double nearest, farthest;
+
+  template <class Pixel>
+  pinhole_view(const depth_image<Pixel>& image, double nearest, double farthest)
+      : left((-0.5 - image.cx) * image.inverse_fx),
+        right((image.width - 0.5 - image.cx) * image.inverse_fx),
+        top((-0.5 - image.cy) * image.inverse_fy),
+        bottom((image.height - 0.5 - image.cy) * image.inverse_fy),
+        nearest(nearest),
+        farthest(farthest) {}
+
+  bool shows(double x, double y, double z) const {
+    return z >= nearest && z <= farthest && x >= left * z && x <= right * z && y >= top * z && y <= bottom * z;
+  }
+  /// How far everything in a ball is at least from all that is not shown; 0 or less if some of the ball is not. The
+  /// camera's frame, metres.
+  double from_edge(const ball& b) const {
+    const double x = b.center.x, y = b.center.y, z = b.center.z;
+    const auto inward = [&](double across, double slope, double sign) {
+      return sign * (slope * z - across) / std::hypot(1, slope);
+    };
+    const double least = std::min({inward(x, left, -1), inward(x, right, 1), inward(y, top, -1), inward(y, bottom, 1),
+                                   z - nearest, farthest - z});
+    return least - b.radius - 1e-6 * (std::fabs(x) + std::fabs(y) + std::fabs(z));
+  }
+
+  /// Which of 64 places in a ball it shows, one bit each. `center` and `radius` in a part's frame, metres.
+  std::uint64_t shows_of_ball(vec3 center, double radius, const Eigen::Isometry3d& camera_from_part) const {
+    static const auto places = [] {  // equal shares of the volume, turned by the golden angle
+      std::array<Eigen::Vector3d, 64> all;
+      for (int i = 0; i < 64; ++i) {
+        const double away = std::cbrt((i * 37 % 64 + 0.5) / 64), up = 1 - (2 * i + 1) / 64.0,
+                     turn = 2.399963229728653 * i, beside = std::sqrt(1 - up * up);
+        all[std::size_t(i)] = away * Eigen::Vector3d(beside * std::cos(turn), beside * std::sin(turn), up);
+      }
+      return all;
+    }();
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 64; ++i) {
+      const Eigen::Vector3d at =
+          camera_from_part * (Eigen::Vector3d(center.x, center.y, center.z) + radius * places[std::size_t(i)]);
+      bits |= std::uint64_t(shows(at.x(), at.y(), at.z())) << i;
+    }
+    return bits;
+  }
+};
 
 /// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
 /// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
 /// Refused: depths that are no range, a ray image without `half_pixel`, not one label per pixel, and radii as
 /// in_collision.
 struct unseen {
-  hiding room = {};                          ///< Where hidden room begins and ends.
-  double half_pixel = 0;                     ///< For ray images: `half_pixel_of` their table.
-  std::span<const point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
+  hiding room = {};                   ///< Where hidden room begins and ends.
+  double half_pixel = 0;              ///< For ray images: `half_pixel_of` their table.
+  borrowed<point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
   bool places = false;  ///< Also where every part is nearest: `at`, `nearest` and `normal`, as the robot always has.
   bool edges = false;   ///< Also how far every part is from the edge of the view: `to_edge`.
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
@@ -44,6 +197,7 @@ struct unseen {
       throw std::invalid_argument("clearance: half a pixel is " + std::to_string(half_pixel) +
                                   " wide at z = 1, which must be 0 or more and below 0.25");
   }
+  void check(std::size_t parts) const { check(), check_radii(radii, parts); }
 };
 
 namespace detail {
@@ -95,7 +249,7 @@ class unseen::engine {
   /// The result stays valid until the next call.
   template <class Clouds>
   const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
-    q.check(), check_radii(q.radii, model_.size());
+    q.check(model_.size());
     used_ = 0;
     result& r = result_;
     r.all = {}, r.own_shadow = {}, r.parts.clear();
@@ -110,12 +264,12 @@ class unseen::engine {
     for_each_cloud(clouds, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
       const auto image = as_measured{}(given);
       if constexpr (seeing_image<decltype(as_measured{}(given))>) {
-        look(poses, given, image, pose, labels, q, number++, places, r);
+        ask_camera(poses, given, image, pose, labels, q, number++, places, r);
         if (labels != nullptr) labels += image.size();
       } else if constexpr (detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>) {
         if (labels != nullptr)
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
-        look(poses, given, image.source, pose, image.labels, q, number++, places, r);
+        ask_camera(poses, given, image.source, pose, image.labels, q, number++, places, r);
       } else {
         refuse<Clouds, S>(number);
       }
@@ -142,8 +296,9 @@ class unseen::engine {
 
   /// `labels`: of this image, or null.
   template <class Given, seeing_image S>
-  void look(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image, const Eigen::Isometry3d& pose,
-            const point_label* labels, const unseen& q, std::uint32_t number, bool places, result& r) {
+  void ask_camera(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image,
+                  const Eigen::Isometry3d& pose, const point_label* labels, const unseen& q, std::uint32_t number,
+                  bool places, result& r) {
     constexpr bool pinhole = requires(const S& s) { s.inverse_fx; };
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
@@ -176,13 +331,13 @@ class unseen::engine {
     const auto lower = [&](std::size_t k, const min_distance_per_part_result& of) {
       if (of.all.dropped[int(drop_reason::too_close)] != 0) return -double(infinity);  // an unbounded radius
       if (of.parts[k].cloud == none) return double(infinity);
-      return minimum::certain_distance(of.parts[k].distance, frames::slop(facts_of(k, q)),
-                                       {frame_.places[k].error, frame_.error.per_metre});
+      return frames::certain_distance(of.parts[k].distance, frames::slop(facts_of(k, q)),
+                                      {frame_.places[k].error, frame_.error.per_metre});
     };
     const auto widen = [&](min_distance_result& of, const std::vector<double>& lowers) {
       if (q.radii.empty() || of.part == none) return;
-      minimum::bracket(of, std::ranges::min(lowers), facts_of(of.part, q).tolerance, false, frame_.error);
-      minimum::allow_for_too_close(of);
+      frames::bracket(of, std::ranges::min(lowers), facts_of(of.part, q).tolerance, false, frame_.error);
+      frames::allow_for_too_close(of);
     };
     c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
     c.vague = vague_source<Given>;
@@ -195,8 +350,8 @@ class unseen::engine {
         const ball& around = frame_.places[k].around;
         const vec3 middle = around.center + frame_.origin;
         double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(facts_of(k, q));
-        if constexpr (vague_source<Given>)  // the view may be turned and shifted
-          edge = fma(-double(given.turn), double(length(middle)) + around.radius, edge - given.shift) /
+        if constexpr (vague_source<Given>)  // the view may be turned and shifted, and what was outside has moved in
+          edge = fma(-double(given.turn), double(length(middle)) + around.radius, edge - given.shift - given.drift) /
                  (1 + double(given.turn));
         c.shown.back() = view.shows_of_ball(model_.facts[k].center, model_.facts[k].radius, pose.inverse() * poses[k]);
       }

@@ -14,7 +14,7 @@ struct within_result {
   std::vector<std::size_t> offsets;
   std::vector<pair_distance> pairs;  ///< Distances as computed, in metres.
   point_counts counts;
-  distance_certainty certain;  ///< Of each distance.
+  distance_certainty certain;  ///< Of each pair's distance, by its part.
 };
 
 namespace pairwise {
@@ -60,23 +60,26 @@ struct within {
     point_counts* counts;
   };
 
+  void check(std::size_t parts) const {
+    if (radius.size() != 1 && radius.size() != parts)
+      throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but " +
+                                  std::to_string(radius.size()) + " radii");
+    for (std::size_t k = 0; k < radius.size(); ++k)
+      if (!(radius[k] == radius[k]))
+        throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
+  }
+
   template <class Asked>
-  out room(const Asked& a, std::size_t least = 0) const {
-    const auto list = a.memory.template room<pair_distance>(std::max<std::size_t>(least, 1 << 16));
-    return {list.data(), list.size(), a.template room<unsigned long long>(1), a.template room<point_counts>(1)};
+  out space(const Asked& a, std::size_t least = 0) const {
+    const auto list = a.memory.template space<pair_distance>(std::max<std::size_t>(least, 1 << 16));
+    return {list.data(), list.size(), a.template space<unsigned long long>(1), a.template space<point_counts>(1)};
   }
   template <class Asked>
   pairwise::listed prepare(const Asked& a, const out& to) const {
-    if (radius.size() != 1 && radius.size() != a.parts())
-      throw std::invalid_argument("clearance: there are " + std::to_string(a.parts()) + " parts, but " +
-                                  std::to_string(radius.size()) + " radii");
+    check(a.parts());
     a.reaches.clear();
-    for (std::size_t k = 0; k < a.parts(); ++k) {
-      const double its = radius[radius.size() == 1 ? 0 : k];
-      if (!(its == its))
-        throw std::invalid_argument("clearance: the radius of part " + std::to_string(k) + " is not a number");
-      a.reaches.push_back(frames::largest_within(its));
-    }
+    for (std::size_t k = 0; k < a.parts(); ++k)
+      a.reaches.push_back(frames::largest_within(radius[radius.size() == 1 ? 0 : k]));
     const auto [reaches] = a.put(a.reaches);
     const unsigned long long nothing = 0;
     a.on.stage(std::span(&nothing, 1), to.count);

@@ -2,6 +2,7 @@
 #pragma once
 // Which parts have points in zones around them: stop, slow down, warn.
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/query/query.hpp>
 #include <clearance/robot/widened.hpp>
 
@@ -34,7 +35,13 @@ struct zones_result {
   point_counts counts;
   std::uint64_t unseen = 0;  ///< Points that there was no time for; any of them may be in any zone.
 
-  const zone& of(std::size_t part, std::size_t z) const { return zones[part * per_part + z]; }
+  /// Zone `z` of a part. Throws std::out_of_range if there is none.
+  const zone& of(std::size_t part, std::size_t z) const& {
+    check_number("part", part, per_part == 0 ? 0 : zones.size() / per_part);
+    check_number("zone", z, per_part);
+    return zones[part * per_part + z];
+  }
+  zone of(std::size_t part, std::size_t z) const&& { return of(part, z); }
   /// The innermost zone of all parts with enough points: 0 is the nearest threshold, `per_part` means that all are
   /// empty. It is 0 for a frame without a valid point, without a part, with something too close to be measured, or with
   /// unseen points, because nothing is known then.
@@ -140,15 +147,12 @@ struct tell_zone {
   }
 };
 
-/// A part's reaches: its thresholds, and how much nearer than computed a point may be.
-inline void add_reaches(std::span<const double> thresholds, const part_facts& facts, const frames::float_error& error,
-                        std::vector<real>& reaches) {
-  for (std::size_t z = 0; z < thresholds.size(); ++z) {
+/// Throws std::invalid_argument unless a part's thresholds are numbers from 0 on, in ascending order.
+inline void check_thresholds(std::span<const double> thresholds) {
+  for (std::size_t z = 0; z < thresholds.size(); ++z)
     if (!(thresholds[z] >= 0) || (z > 0 && !(thresholds[z] >= thresholds[z - 1])))
       throw std::invalid_argument("clearance: a zone's threshold is " + std::to_string(thresholds[z]) +
                                   " m; they must not be negative, nor fall");
-    reaches.push_back(frames::may_be_within(thresholds[z], facts, error));
-  }
 }
 
 }  // namespace pairwise
@@ -168,12 +172,22 @@ struct zones {
     point_counts* counts;
   };
 
+  void check() const {
+    if (thresholds.empty() || min_points == 0)
+      throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " +
+                                  std::to_string(thresholds.size()) + " and " + std::to_string(min_points));
+    if (!each_part) pairwise::check_thresholds(thresholds);
+  }
+  void check(std::size_t parts) const {
+    const std::size_t each = per_part(parts);
+    if (each_part)
+      for (std::size_t k = 0; k < parts; ++k) pairwise::check_thresholds(std::span(thresholds).subspan(k * each, each));
+    check_radii(radii, parts);
+  }
   /// How many zones a part has.
   std::size_t per_part(std::size_t parts) const {
+    check();
     const std::size_t given = thresholds.size();
-    if (given == 0 || min_points == 0)
-      throw std::invalid_argument("clearance: zones need a threshold, and min_points a point; here are " +
-                                  std::to_string(given) + " and " + std::to_string(min_points));
     if (each_part && (parts == 0 || given % parts != 0))
       throw std::invalid_argument("clearance: " + std::to_string(given) +
                                   " thresholds are not the same number for each of " + std::to_string(parts) +
@@ -182,20 +196,20 @@ struct zones {
   }
 
   template <class Asked>
-  out room(const Asked& a) const {
-    return {a.template room<zone>(a.parts() * per_part(a.parts())), a.template room<point_counts>(1)};
+  out space(const Asked& a) const {
+    return {a.template space<zone>(a.parts() * per_part(a.parts())), a.template space<point_counts>(1)};
   }
   template <class Asked>
   pairwise::count_in_zones prepare(const Asked& a, const out&) const {
+    check(a.parts());
     const std::size_t each = per_part(a.parts());
-    check_radii(radii, a.parts());
     a.reaches.clear();
     for (std::size_t k = 0; k < a.parts(); ++k)
-      pairwise::add_reaches(std::span(thresholds).subspan(each_part ? k * each : 0, each),
-                            widened(a.facts[k], radius_of(radii, k)), a.frame.error, a.reaches);
+      for (const double its : std::span(thresholds).subspan(each_part ? k * each : 0, each))
+        a.reaches.push_back(frames::may_be_within(its, widened(a.facts[k], radius_of(radii, k)), a.frame.error));
     using answer = pairwise::count_in_zones;
     const std::size_t words = answer::copies * a.reaches.size();
-    auto* const empty = a.template room<pairwise::zone_words>(words);
+    auto* const empty = a.template space<pairwise::zone_words>(words);
     a.on.for_each(words, pairwise::empty_zones{empty});
     const auto [near, start] = a.put(a.reaches, a.first);
     return {empty, near, start, std::uint32_t(each), std::uint32_t(a.reaches.size())};

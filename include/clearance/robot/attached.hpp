@@ -25,13 +25,24 @@ class attached {
   }
 
   std::size_t size() const { return facts_.size(); }
-  model_view<PartView> view() const { return {views_.data(), facts_, depth_, width_}; }
+  model_view<PartView> view() const& CLEARANCE_LIFETIMEBOUND { return {views_.data(), facts_, depth_, width_}; }
+  model_view<PartView> view() const&& = delete;  // it would be gone when the view is read; give it a name
 
  private:
   std::vector<part_facts> facts_;
   std::uint32_t depth_, width_;
   typename B::template buffer<PartView> views_;
 };
+
+namespace detail {
+
+/// Does a robot own what its part views look at? `attached` owns only the views, which are copied.
+template <class R>
+inline constexpr bool owns_parts = owning_robot<R>;
+template <class PartView, class B>
+inline constexpr bool owns_parts<attached<PartView, B>> = false;
+
+}  // namespace detail
 
 /// Both must be where `on` runs and have the same kind of part: spheres or meshes, with the same volume.
 template <backend B, robot Robot, robot Object>
@@ -42,5 +53,17 @@ auto attach(const B& on, const Robot& robot, const Object& object) {
       "what is attached has to be of the same kind of part as the robot: the same primitives, volumes and interior");
   return attached<part, B>(on, view_of(robot), view_of(object));
 }
+
+// A temporary robot or object would be gone when the answer is asked; give it a name.
+
+template <backend B, robot Robot, robot Object>
+  requires(detail::owns_parts<Robot>)
+void attach(const B&, const Robot&&, const Object&) = delete;
+template <backend B, robot Robot, robot Object>
+  requires(detail::owns_parts<Object>)
+void attach(const B&, const Robot&, const Object&&) = delete;
+template <backend B, robot Robot, robot Object>
+  requires(detail::owns_parts<Robot> || detail::owns_parts<Object>)
+void attach(const B&, const Robot&&, const Object&&) = delete;
 
 }  // namespace clearance

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A robot as every question takes it: its parts, in the memory of one backend.
 
+#include <clearance/ground/borrowed.hpp>
 #include <clearance/robot/field.hpp>
 
 #include <algorithm>
@@ -17,7 +19,7 @@ struct model_view {
   using part_type = PartView;
 
   const PartView* parts;
-  std::span<const part_facts> facts;
+  borrowed<part_facts> facts;
   std::uint32_t depth, width;          ///< The largest over all trees.
   const field_view* fields = nullptr;  ///< One per part, or null.
 
@@ -54,6 +56,11 @@ auto view_of(const Robot& r) {
   else
     return check(r), r;
 }
+
+/// A robot, or a part, that owns what a view of it looks at. Of a temporary one nothing can be made that is asked
+/// later.
+template <class R>
+concept owning_robot = rigid_part<R> || (robot<R> && !std::is_trivially_copyable_v<R>);
 
 namespace detail {
 
@@ -119,13 +126,23 @@ class model {
 
   const std::vector<Part>& parts() const { return parts_; }
   std::size_t size() const { return parts_.size(); }
-  model_view<view_type> view() const {
+  model_view<view_type> view() const& CLEARANCE_LIFETIMEBOUND {
     return {views_.data(), facts_, depth_, width_, fields_.empty() ? nullptr : field_views_.data()};
   }
+  model_view<view_type> view() const&& = delete;  // the model would be gone when the view is read; give it a name
   /// One per part, or none.
   const std::vector<field<B>>& fields() const { return fields_; }
-  /// One field per part, see with_fields. If one is empty, none is used.
+  /// One field per part, see with_fields. If one is empty, none is used. Throws std::invalid_argument if one was made
+  /// for another part.
   void set_fields(std::vector<field<B>> fields, const B& on = {}) {
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      if (fields[k].empty()) continue;
+      const ball& its = fields[k].shape.around;
+      if (k >= facts_.size() || its.center != facts_[k].center || its.radius != facts_[k].radius ||
+          fields[k].cells.size() != fields[k].shape.all_cubes())
+        throw std::invalid_argument("clearance: field " + std::to_string(k) + " is not that of part " +
+                                    std::to_string(k));
+    }
     std::vector<field_view> views;
     for (const auto& f : fields)
       if (!f.empty()) views.push_back(f.view());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A rigid part of a robot: its tree, its inside, and how far they may be from the true solid.
 
 #include <clearance/bvh/bvh.hpp>
 
@@ -15,6 +16,8 @@ struct part_facts {
   real radius = infinity;
   real gap = 0;        ///< The solid's largest distance to the primitives, certified. Infinite: no certificate.
   real tolerance = 0;  ///< How far the solid may differ from the true surface, either way (tessellation).
+
+  friend bool operator==(const part_facts&, const part_facts&) = default;
 };
 
 /// Throws std::invalid_argument unless `metres` is a length from 0 to infinity: others would make points free that are
@@ -129,10 +132,37 @@ struct part {
 template <class Tree, class Interior>
 part(Tree, Interior, part_facts) -> part<Tree, Interior>;
 
+namespace detail {
+
+/// Throws std::invalid_argument unless walks stay in a tree's arrays, and stacks as large as it says suffice.
+template <bounding_volume V, primitive P>
+void check_tree(const bvh<V, P>& tree) {
+  const auto require = [](bool holds, const char* otherwise) {
+    if (!holds) throw std::invalid_argument(std::string("clearance: a tree ") + otherwise);
+  };
+  const std::size_t size = tree.nodes.size();
+  require(size != 0 && tree.volumes.size() == size, "has another number of volumes than of nodes, or none");
+  require(tree.primitives.size() == tree.ids.size(), "has another number of primitives than of their numbers");
+  std::vector<std::uint32_t> level(size, 0);
+  for (std::size_t n = 0; n < size; ++n) {
+    const bvh_node& node = tree.nodes[n];
+    const std::size_t end = std::size_t(node.first) + node.count();
+    require(end <= (node.is_leaf() ? tree.primitives.size() : size), "has a node that reaches beyond its arrays");
+    require(level[n] <= tree.depth && (node.is_leaf() || node.count() <= tree.width),
+            "is deeper or wider than it says");
+    if (node.is_leaf()) continue;
+    require(node.first > n, "has a node that is not after its parent");
+    for (std::size_t child = node.first; child < end; ++child) level[child] = level[n] + 1;
+  }
+}
+
+}  // namespace detail
+
 /// A part whose primitives are the whole solid, up to the certified `gap`. Metres. Throws std::invalid_argument if
-/// `gap` or `tolerance` is negative or NaN.
+/// `gap` or `tolerance` is negative or NaN, or if the tree's arrays contradict one another.
 template <bounding_volume V, primitive P>
 part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
+  detail::check_tree(tree);
   check_length(gap, "the gap of a part"), check_length(tolerance, "the tolerance of a part");
   const ball around = enclosing_ball(std::span<const P>(tree.primitives));
   return {std::move(tree), {}, {around.center, around.radius, rounded_up(gap), rounded_up(tolerance)}};

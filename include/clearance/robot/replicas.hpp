@@ -27,10 +27,20 @@ class replicas {
   explicit replicas(std::vector<Model> each) : each_(std::move(each)) {
     for (const Model& m : each_) views_.push_back(m.view());
   }
+  /// A copy has views of its own models.
+  replicas(const replicas& other)
+    requires std::copy_constructible<Model>
+      : replicas(other.each_) {}
+  replicas(replicas&&) = default;
+  replicas& operator=(replicas other) {
+    std::swap(each_, other.each_), std::swap(views_, other.views_);
+    return *this;
+  }
 
   std::size_t size() const { return each_[0].size(); }
   const std::vector<Model>& each() const { return each_; }
-  replicas_view<view_type> view() const { return {views_, views_[0].facts}; }
+  replicas_view<view_type> view() const& CLEARANCE_LIFETIMEBOUND { return {views_, views_[0].facts}; }
+  replicas_view<view_type> view() const&& = delete;  // the copies would be gone when the view is read; name them
 
  private:
   std::vector<Model> each_;

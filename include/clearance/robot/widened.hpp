@@ -2,7 +2,7 @@
 #pragma once
 // Parts that may be elsewhere than their poses say.
 
-#include <clearance/backend/kept_memory.hpp>
+#include <clearance/backends/kept_memory.hpp>
 #include <clearance/points/sensor_noise.hpp>
 #include <clearance/robot/model.hpp>
 
@@ -62,7 +62,7 @@ class widened_model {
     }
     memory_.begin();
     const real* const tolerances = std::get<0>(memory_.put(tolerances_));
-    PartView* const views = memory_.template room<PartView>(model_.size()).data();
+    PartView* const views = memory_.template space<PartView>(model_.size()).data();
     on_.for_each(model_.size(), widen_parts<PartView>{model_.parts, tolerances, views});
     return {views, facts_, model_.depth, model_.width, model_.fields};
   }

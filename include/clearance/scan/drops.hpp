@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Counts the points of a scan that are invalid, by reason.
 
 #include <clearance/concepts.hpp>
 #include <clearance/ground/ordered.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The end of a scan on a device: its last block gives the answer and prepares the next scan.
 
 #include <clearance/result.hpp>
 #include <clearance/scan/block.cuh>

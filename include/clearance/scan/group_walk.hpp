@@ -1,22 +1,149 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // On a host a thread walks once for points that lie together, from their middle: in vector code over eight nodes or
-// primitives at once (tangent_walk.cuh has a warp for that). Few primitives are left, and then the vectors are of
+// primitives at once (tangent_packets.cuh has a warp for that). Few primitives are left, and then the vectors are of
 // points.
 
-#include <clearance/frame/frame.hpp>
-#include <clearance/frame/root_test.hpp>
+#include <clearance/frames/frame.hpp>
+#include <clearance/frames/root_test.hpp>
+#include <clearance/ground/math.hpp>
+#include <clearance/points/extremes.hpp>
+#include <clearance/result.hpp>
 #include <clearance/scan/interior.hpp>
-#include <clearance/scan/neighbours.hpp>
+#include <clearance/scan/packet.hpp>
 #include <clearance/scan/seen_memory.hpp>
+#include <clearance/scan/yardstick.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace clearance::scan {
+
+/// Values whose words lie side by side, so that a loop over them becomes vector code on a host.
+template <class T, std::size_t Lanes = 8>
+struct side_by_side {
+  static constexpr std::size_t words = sizeof(T) / sizeof(real);
+  using one = std::array<real, words>;
+  alignas(64) real word[words][Lanes];
+
+  void put(std::size_t j, const T& value) {
+    const one its = std::bit_cast<one>(value);
+    for (std::size_t w = 0; w < words; ++w) word[w][j] = its[w];
+  }
+  T operator[](std::size_t j) const { return at(j, std::make_index_sequence<words>{}); }
+
+ private:
+  template <std::size_t... W>
+  T at(std::size_t j, std::index_sequence<W...>) const {
+    return std::bit_cast<T>(one{word[W][j]...});
+  }
+};
+
+/// The same for what is not made of words.
+template <class T, std::size_t Lanes>
+  requires(!std::is_trivially_copyable_v<T> || sizeof(T) % sizeof(real) != 0)
+struct side_by_side<T, Lanes> {
+  const T* its[Lanes];
+
+  void put(std::size_t j, const T& value) { its[j] = &value; }
+  const T& operator[](std::size_t j) const { return *its[j]; }
+};
+
+// Points on a host that lie together. Loops over them become vector code.
+
+/// Up to 64 points in the cloud's frame, with what is nearest to each: `within` metres. Lanes without a point have a
+/// reach of minus infinity.
+struct neighbours : packet<64> {
+  static constexpr std::size_t most = 64, block = 32;  ///< A block's points are tested together.
+  std::uint32_t count = 0;
+  std::uint32_t part[most], primitive[most];
+
+  void add(vec3 p, real reach) {
+    part[count] = primitive[count] = none;
+    put(count++, p, reach);
+  }
+  /// After the last point.
+  void fill() {
+    for (std::size_t j = count; j < most; ++j) put(j, (*this)[0], -infinity), part[j] = primitive[j] = none;
+  }
+  real reach() const {
+    real largest = -infinity;
+    for (std::size_t j = 0; j < count; ++j) largest = max(largest, within[j]);
+    return largest;
+  }
+
+  /// Keeps the nearer one; of equally near ones the lowest part, and of that the lowest primitive. Without branches.
+  void offer(std::size_t j, real distance, std::uint32_t k, std::uint32_t id) {
+    const auto first = int(k < part[j]) | (int(k == part[j]) & int(id < primitive[j]));
+    const bool nearer = bool(int(distance < within[j]) | (int(distance == within[j]) & first));
+    within[j] = choice(nearer, distance, within[j]);
+    part[j] = nearer ? k : part[j], primitive[j] = nearer ? id : primitive[j];
+  }
+
+  /// The box around them, without noise.
+  surroundings surround() const {
+    extent box;
+    spread(x, box.lower.x, box.upper.x, most), spread(y, box.lower.y, box.upper.y, most);
+    spread(z, box.lower.z, box.upper.z, most);
+    const vec3 c = fma(0.5f, box.lower + box.upper, vec3{0, 0, 0});
+    alignas(64) real far[block] = {};
+    for (std::size_t b = 0; b < most; b += block)
+      for (std::size_t l = 0; l < block; ++l) {
+        const vec3 e = (*this)[b + l] - c;
+        far[l] = max(far[l], e.x * e.x + e.y * e.y + e.z * e.z);
+      }
+    for (const real f : far) far[0] = max(far[0], f);
+    const auto half = [](real low, real high, real middle) { return max(high - middle, middle - low) * (1 + slack); };
+    surroundings all{};
+    all.middle = c;
+    all.half = {half(box.lower.x, box.upper.x, c.x), half(box.lower.y, box.upper.y, c.y),
+                half(box.lower.z, box.upper.z, c.z)};
+    all.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
+    return all;
+  }
+
+  /// Tests primitive `id` of part k exactly, block by block, where its tangent `bound` at the middle says that it may
+  /// be as near as what is known. `inside`: a bit for each point that is in the part, and so has its answer.
+  template <class P>
+  void test(const surroundings& from, const tangent& bound, const rigid_transform& place, const P& which,
+            std::uint32_t k, std::uint32_t id, std::uint64_t inside) {
+    with_vectors([&] {
+      const surroundings all = from;
+      const tangent t = bound;
+      const rigid_transform part_from_cloud = place;
+      const P its = which;
+      const std::uint32_t its_part = k, its_id = id;
+      neighbours& n = *this;
+      for (std::size_t b = 0; b < n.count; b += block) {
+        std::uint32_t any = 0;
+        for (std::size_t j = b; j < b + block; ++j)
+          any |= std::uint32_t(all.may_reach(t.distance, t.direction, n[j] - all.middle, n.within[j]));
+        if (any == 0) continue;
+        alignas(64) real distance[block];
+        if constexpr (rootless_primitive<P>) {
+          side_by_side<decltype(its.before_root(n[0])), block> before;
+          alignas(64) real square[block], root[block];
+          for (std::size_t l = 0; l < block; ++l) {
+            const auto half = its.before_root(part_from_cloud(n[b + l]));
+            before.put(l, half), square[l] = half.squared;
+          }
+          square_roots<block>(square, root);
+          for (std::size_t l = 0; l < block; ++l) distance[l] = before[l].distance(root[l]);
+        } else {
+          for (std::size_t l = 0; l < block; ++l) distance[l] = its.distance(part_from_cloud(n[b + l]));
+        }
+        for (std::size_t l = 0; inside != 0 && l < block; ++l)
+          if ((inside >> (b + l) & 1) != 0) distance[l] = not_a_number;
+        for (std::size_t l = 0; l < block; ++l) n.offer(b + l, distance[l], its_part, its_id);
+      }
+    });
+  }
+};
 
 /// A walk through the trees of all parts. It keeps what was near to the last points, as a first bound for the next.
 template <class PartView>
@@ -49,13 +176,13 @@ class group_walk {
     all_.set_limit(near.reach());
     inner_.clear();
     if (std::ranges::find(parts, hint_.part) != parts.end()) {
-      take(hint_);
-      look(false, near);
+      add(hint_);
+      examine(false, near);
     }
     begin(near, parts);
     while (!nodes_.empty() || batch_.count > 0) {
       if (nodes_.empty()) {
-        look(true, near);
+        examine(true, near);
         continue;
       }
       const pending e = nodes_.back();
@@ -166,18 +293,18 @@ class group_walk {
   /// Primitives wait until there are eight of one part.
   void take_all(const pending& leaf, neighbours& near) {
     for (std::uint32_t j = 0; j < leaf.node.count(); ++j) {
-      if (batch_.count > 0 && batch_.part != leaf.part) look(true, near);
-      take({leaf.part, leaf.node.first + j});
-      if (batch_.count == 8) look(true, near);
+      if (batch_.count > 0 && batch_.part != leaf.part) examine(true, near);
+      add({leaf.part, leaf.node.first + j});
+      if (batch_.count == 8) examine(true, near);
     }
   }
-  void take(primitive_of_part p) {
+  void add(primitive_of_part p) {
     batch_.part = p.part;
     batch_.place[batch_.count] = p.place;
     batch_.primitives.put(batch_.count++, parts_[p.part].tree.primitives[p.place]);
   }
   /// Looks at those that wait. `finds`: what may be nearest to a point becomes a candidate.
-  void look(bool finds, neighbours& near) {
+  void examine(bool finds, neighbours& near) {
     const std::uint32_t k = batch_.part, count = batch_.count;
     for (std::uint32_t j = count; j < 8; ++j) batch_.primitives.put(j, parts_[k].tree.primitives[batch_.place[0]]);
     tangents its;

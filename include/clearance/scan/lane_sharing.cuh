@@ -3,7 +3,7 @@
 // Warps of a block that have no packet left take points of another's, where each point is one warp's alone. Some
 // packets take many times as long as most, and a block ends with its last one. Who does what changes no answer.
 
-#include <clearance/scan/parts.cuh>
+#include <clearance/scan/block.cuh>
 
 namespace clearance::scan {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a warp keeps of a walk by tangents (tangent_walk.cuh).
+// What a warp keeps of a walk by tangents (tangent_packets.cuh).
 
-#include <clearance/bvh/bvh_view.hpp>
+#include <clearance/bvh/bvh.hpp>
 #include <clearance/scan/arguments.hpp>
 #include <clearance/scan/yardstick.hpp>
 

@@ -3,6 +3,7 @@
 // How the threads of a block are divided, and what a warp agrees on.
 
 #include <clearance/ground/math.hpp>
+#include <clearance/ground/read_only.hpp>
 
 namespace clearance::scan {
 
@@ -47,15 +48,11 @@ __device__ inline std::uint32_t most_of(unsigned mask, std::uint32_t value) { re
 template <class T>
 __device__ T from_lane(const T& mine, int lane, unsigned mask = all_lanes) {
   static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
-  union words {
-    __device__ words() {}
-    __device__ ~words() {}
-    T value;
-    std::uint32_t word[sizeof(T) / sizeof(std::uint32_t)];
-  } of;
+  as_words<T, std::uint32_t> of;
   of.value = mine;
 #pragma unroll
-  for (std::size_t i = 0; i < sizeof(T) / sizeof(std::uint32_t); ++i) of.word[i] = __shfl_sync(mask, of.word[i], lane);
+  for (std::size_t i = 0; i < sizeof(T) / sizeof(std::uint32_t); ++i)
+    of.words[i] = __shfl_sync(mask, of.words[i], lane);
   return of.value;
 }
 

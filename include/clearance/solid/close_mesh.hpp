@@ -1,10 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Finds the inside of a mesh such as robots come with, whatever is wrong with it, and says how well it is known.
 
 #include <clearance/solid/close_shape.hpp>
-#include <clearance/solid/second_opinion.hpp>
+#include <clearance/solid/closed_mesh.hpp>
+#include <clearance/solid/flood.hpp>
+#include <clearance/solid/polygon.hpp>
+#include <clearance/solid/winding.hpp>
 
 namespace clearance {
+
+/// Bodies with a winding number below 0 somewhere: they cross themselves, and another body's number could cancel
+/// theirs. Rays find them if they are at least a hundredth of the part.
+inline std::vector<bool> cancelling_bodies(const closed_mesh& mesh, const basic_winding<double>& w,
+                                           std::span<const std::uint32_t> body) {
+  std::vector<bool> cancels(mesh.encloses.size(), false);
+  std::vector<std::int32_t> number(cancels.size(), 0);
+  std::vector<std::uint32_t> below;  // bodies whose number fell below 0 since the last piece of some length
+  for_each_ray(w, affordable_rays(w, 128), [&](std::span<const ray_hit> hits) {
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      const std::uint32_t its = body[hits[k].triangle];
+      number[its] -= hits[k].sign;
+      if (number[its] == -1 && hits[k].sign == 1) below.push_back(its);
+      if (k + 1 == hits.size() || !(hits[k + 1].x - hits[k].x > least_piece(w))) continue;
+      for (const std::uint32_t b : below)
+        if (number[b] < 0) cancels[b] = true;
+      below.clear();
+    }
+    for (const ray_hit& hit : hits) number[body[hit.triangle]] = 0;
+    below.clear();
+  });
+  return cancels;
+}
+
+/// What a flood from outside does not reach in a mesh's shapes.
+class second_opinion {
+ public:
+  /// `shape`: the shape of each triangle, caps included. `more`: triangles by shape that are no surface, but walls.
+  second_opinion(const closed_mesh& mesh, std::span<const std::uint32_t> shape,
+                 const std::vector<polygon_triangles>& more)
+      : mesh_(mesh), triangles_of_(more) {
+    for (std::uint32_t i = 0; i < shape.size(); ++i) triangles_of_[shape[i]].push_back(mesh.surface.triangles[i]);
+  }
+
+  /// Is there a cube that a flood around this shape does not reach, but that is outside by the winding numbers? Coarse,
+  /// because it only checks what caps closed.
+  bool contradicts(std::uint32_t shape, const basic_winding<double>& w) const {
+    Eigen::AlignedBox3d box;
+    extend(box, shape);
+    const enclosure_grid grid = grid_around(box, coarse_cubes);
+    const std::size_t row = grid.size[0], layer = row * grid.size[1];
+    const std::vector<std::uint32_t> bits = flooded(grid, shape, false);
+    for (std::size_t i = 0; i < layer * grid.size[2]; ++i)
+      if (bits[i / 32] >> i % 32 & 1) {
+        const Eigen::Vector3d cube(i % row, i / row % grid.size[1], i / layer);
+        const Eigen::Vector3d p = grid.low + grid.cube * (cube + Eigen::Vector3d::Constant(0.5));
+        if (!w.view().inside(p.x(), p.y(), p.z())) return true;
+      }
+    return false;
+  }
+
+  /// All cubes that floods around each of these shapes do not reach. `cube` is set even if nothing is enclosed.
+  enclosure_grid enclosed(const std::vector<bool>& shapes) const {
+    Eigen::AlignedBox3d box;
+    for (std::uint32_t s = 0; s < shapes.size(); ++s)
+      if (shapes[s]) extend(box, s);
+    const auto floods = double(std::count(shapes.begin(), shapes.end(), true));
+    enclosure_grid grid = grid_around(box, fine_cubes * std::min(1.0, most_fine / floods));
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t s = 0; s < shapes.size(); ++s) {
+      if (!shapes[s]) continue;
+      const std::vector<std::uint32_t> bits = flooded(grid, s, true);
+      all.resize(bits.size());
+      for (std::size_t i = 0; i < bits.size(); ++i) all[i] |= bits[i];
+    }
+    if (std::any_of(all.begin(), all.end(), [](std::uint32_t word) { return word != 0; })) grid.bits = std::move(all);
+    return grid;
+  }
+
+ private:
+  // 50 and 200 cubes along each side of a cube. A fine flood takes a twentieth of a second; for many shapes they are
+  // coarser.
+  static constexpr double coarse_cubes = 1 << 17, fine_cubes = 1 << 23, most_fine = 16;
+
+  std::array<Eigen::Vector3d, 3> corners(const std::array<std::uint32_t, 3>& t) const {
+    return {mesh_.surface.vertices[t[0]], mesh_.surface.vertices[t[1]], mesh_.surface.vertices[t[2]]};
+  }
+  void extend(Eigen::AlignedBox3d& box, std::uint32_t shape) const {
+    for (const auto& t : triangles_of_[shape])
+      for (const auto& c : corners(t)) box.extend(c);
+  }
+  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages) const {
+    flood from_outside(grid, passages);
+    for (const auto& t : triangles_of_[shape]) from_outside.add(corners(t));
+    return from_outside.enclosed();
+  }
+
+  const closed_mesh& mesh_;
+  std::vector<polygon_triangles> triangles_of_;
+};
 
 namespace detail {
 
@@ -27,13 +121,13 @@ class mesh_closer {
       std::uint32_t vertex = 0, body = 0;
       for (std::uint32_t k = 0; k < shapes.size(); ++k) {
         append(shapes[k], k, caps, vertex, body);
-        vertex += std::uint32_t(shapes[k].mesh.vertices.size()),
-            body += std::uint32_t(shapes[k].bodies.one_sided.size());
+        vertex += std::uint32_t(shapes[k].mesh.vertices.size());
+        body += std::uint32_t(shapes[k].bodies.one_sided.size());
       }
     }
     for (const shape_surface& s : shapes)
       out_.surface.vertices.insert(out_.surface.vertices.end(), s.mesh.vertices.begin(), s.mesh.vertices.end());
-    const std::size_t kept = out_.surface.vertices.size() - cap_vertices_;  // several shapes may use a vertex
+    const std::size_t kept = out_.surface.vertices.size();  // several shapes may use a vertex
     out_.welded = std::uint32_t(mesh_.vertices.size() - std::min(kept, mesh_.vertices.size()));
     measure();
     if (!(out_.area > 0))
@@ -52,10 +146,8 @@ class mesh_closer {
       out_.duplicate += !s.counts[i] && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     }
     out_.flipped += s.bodies.flipped, out_.one_sided_area += s.bodies.one_sided_area;
+    if (options_.cap) out_.caps.loops += add_caps(s, patience_);
     out_.tolerance = std::max(out_.tolerance, s.moved);
-    const std::size_t vertices = s.mesh.vertices.size();
-    if (options_.cap) out_.caps.loops += add_caps(s);
-    cap_vertices_ += std::uint32_t(s.mesh.vertices.size() - vertices);
     turn_out(s);
     return s;
   }
@@ -90,10 +182,13 @@ class mesh_closer {
     }
     for (std::size_t b = 0; b < volumes.size(); ++b) {
       const double size = boxes[b].isEmpty() ? 0 : boxes[b].diagonal().norm();
-      out_.encloses.push_back(std::abs(volumes[b]) > 1e-9 * size * areas[b]);
+      const bool open = !s.open.empty() && s.open[b];
+      out_.encloses.push_back(!open && std::abs(volumes[b]) > 1e-9 * size * areas[b]);
       const bool nothing = areas[b] <= 1e-12 * all.diagonal().squaredNorm();  // slivers at joints
+      out_.sheets += !open && !out_.encloses.back() && !nothing;
       unclean_.push_back(s.bodies.one_sided[b] || (!out_.encloses.back() && !nothing));
       capped_.push_back(false);
+      open_.push_back(open);
     }
     const std::size_t before = out_.encloses.size() - volumes.size();
     for (const body_rim& rim : s.rims) capped_[before + rim.body] = out_.encloses[before + rim.body];
@@ -110,10 +205,15 @@ class mesh_closer {
       auto t = s.mesh.triangles[i];
       for (std::uint32_t& v : t) v += vertex;
       out_.surface.triangles.push_back(t);
-      out_.counts.push_back(s.counts[i]);
+      out_.counts.push_back(s.open.empty() || !s.open[s.bodies.body[i]] ? s.counts[i] : 0);
       out_.body.push_back(body + s.bodies.body[i]);
       shape_.push_back(number);
+      repeats_.push_back(s.counts[i] == 0);
     }
+    if (!caps) return;
+    walls_.push_back(s.strays);
+    for (auto& t : walls_.back())
+      for (std::uint32_t& v : t) v += vertex;
   }
 
   void measure() {
@@ -128,7 +228,7 @@ class mesh_closer {
   /// its cubes.
   void judge(std::uint32_t shapes) {
     std::vector<bool> unclean(shapes, false), capped(shapes, false);
-    const second_opinion flooded(out_, shape_, shapes);
+    const second_opinion flooded(out_, shape_, walls_);
     forgive_one_flat_sheet(shapes);
     if (std::any_of(out_.encloses.begin(), out_.encloses.end(), [](bool e) { return e; })) {
       std::vector<std::uint32_t> body;
@@ -150,50 +250,55 @@ class mesh_closer {
     if (encloses || !out_.enclosed.bits.empty()) out_.inside = inside_by::flood;
     // The flood does not see anything thinner than two cubes, and the cubes at a region's walls do not count as
     // enclosed.
-    out_.tolerance += 2 * std::sqrt(3.0) * out_.enclosed.cube;
+    out_.tolerance += flood::width * out_.enclosed.cube;
   }
 
   void mark(const std::vector<bool>& bodies, std::vector<bool>& shapes) const {
     for (std::size_t i = 0; i < out_.body.size(); ++i)
-      if (out_.counts[i] && bodies[out_.body[i]]) shapes[shape_[i]] = true;
+      if (!repeats_[i] && bodies[out_.body[i]]) shapes[shape_[i]] = true;
   }
 
   /// A single flat sheet encloses nothing, whatever bodies are beside it. A shape with no other unclean body is clean.
   void forgive_one_flat_sheet(std::uint32_t shapes) {
-    std::vector<std::vector<std::uint32_t>> sheets(shapes);
-    std::vector<bool> seen(unclean_.size(), false);
-    for (std::size_t i = 0; i < out_.body.size(); ++i)
-      if (const std::uint32_t b = out_.body[i]; out_.counts[i] && unclean_[b] && !seen[b])
-        seen[b] = true, sheets[shape_[i]].push_back(b);
-    for (const auto& of_shape : sheets)
-      if (of_shape.size() == 1 && flat(of_shape[0])) unclean_[of_shape[0]] = false;
+    constexpr std::uint32_t none = ~0u, several = ~1u;
+    std::vector<std::uint32_t> sheet(shapes, none);  // the only unclean body of a shape
+    std::vector<polygon_triangles> triangles(shapes);
+    for (std::size_t i = 0; i < out_.body.size(); ++i) {
+      const std::uint32_t b = out_.body[i], k = shape_[i];
+      if (repeats_[i] || !unclean_[b] || sheet[k] == several) continue;
+      sheet[k] = sheet[k] == none || sheet[k] == b ? b : several;
+      triangles[k].push_back(out_.surface.triangles[i]);
+    }
+    for (std::uint32_t k = 0; k < shapes; ++k)
+      if (const std::uint32_t b = sheet[k]; b != none && b != several && !open_[b] && flat(triangles[k]))
+        unclean_[b] = false;
   }
-  bool flat(std::uint32_t body) const {
+  bool flat(const polygon_triangles& triangles) const {
     const auto& v = out_.surface.vertices;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero(), origin = normal;
     double most = 0, height = 0, size = 0;
-    const auto each = [&](auto visit) {
-      for (std::size_t i = 0; i < out_.body.size(); ++i)
-        if (out_.counts[i] && out_.body[i] == body) visit(out_.surface.triangles[i]);
-    };
-    each([&](const auto& t) {
+    for (const auto& t : triangles) {
       const Eigen::Vector3d n = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
       if (n.norm() > most) most = n.norm(), normal = n.normalized(), origin = v[t[0]];
-    });
-    each([&](const auto& t) {
-      for (const std::uint32_t c : t)
-        height = std::max(height, std::abs(normal.dot(v[c] - origin))), size = std::max(size, (v[c] - origin).norm());
-    });
+    }
+    for (const auto& t : triangles)
+      for (const std::uint32_t c : t) {
+        height = std::max(height, std::abs(normal.dot(v[c] - origin)));
+        size = std::max(size, (v[c] - origin).norm());
+      }
     return height <= 1e-9 * size;
   }
 
   const triangle_mesh& mesh_;
   const close_options& options_;
   closed_mesh out_;
-  std::vector<std::size_t> loaded_;     // by shape: triangles that are not caps
-  std::vector<std::uint32_t> shape_;    // by triangle
-  std::vector<bool> unclean_, capped_;  // by body
-  std::uint32_t cap_vertices_ = 0;
+  std::vector<std::size_t> loaded_;       // by shape: triangles that are not caps
+  std::vector<std::uint32_t> shape_;      // by triangle
+  std::vector<bool> repeats_;             // by triangle: it lies on others, or has a corner twice
+  std::vector<bool> unclean_, capped_;    // by body
+  std::vector<bool> open_;                // by body: it has a cap that is none
+  std::vector<polygon_triangles> walls_;  // by shape: such caps
+  std::size_t patience_ = 1'000'000'000;  // looks at corners that caps may take: a few seconds
 };
 
 }  // namespace detail

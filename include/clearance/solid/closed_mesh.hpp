@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// What closing a mesh gives: a surface with caps, and how its inside is known.
 
 #include <clearance/solid/enclosure.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
+
+#include <stdexcept>
+#include <string>
 
 namespace clearance {
 
@@ -43,7 +47,7 @@ struct closed_mesh {
   triangle_mesh surface;  ///< Triangle i < loaded is triangle i of the input (perhaps turned); the rest are caps.
   std::uint32_t loaded = 0;
   /// By triangle, how it counts for the winding number: 1 as it is, -1 turned (its body faces inwards), 0 not at all
-  /// (it repeats others). The number is then above 0 in every body.
+  /// (it repeats others, or no cap closes its body). The number is then above 0 in every body.
   std::vector<std::int8_t> counts;
   std::vector<std::uint32_t> body;  ///< By triangle: the connected surface to which it belongs.
   std::vector<bool> encloses;       ///< By body: does it enclose a volume?
@@ -55,9 +59,29 @@ struct closed_mesh {
   std::uint32_t welded = 0;      ///< Vertices that were merged into an earlier one, or that no triangle used.
   std::uint32_t degenerate = 0;  ///< Triangles without area. Kept.
   std::uint32_t duplicate = 0;   ///< Triangles that lie on earlier ones. Kept.
+  std::uint32_t sheets = 0;      ///< Bodies that enclose nothing.
   std::uint32_t flipped = 0;     ///< Triangles that were turned to agree with their neighbours.
   double one_sided_area = 0;     ///< Area of bodies with only one side, such as a Moebius strip. Square metres.
   double area = 0;               ///< Of all loaded triangles.
 };
+
+/// Throws std::invalid_argument if the members of a mesh that close_mesh did not make contradict one another.
+inline void check(const closed_mesh& mesh) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("clearance: the closed mesh " + why); };
+  const std::size_t size = mesh.surface.triangles.size();
+  check_corners(mesh.surface);
+  if (mesh.loaded > size)
+    refuse("has " + std::to_string(size) + " triangles, of which " + std::to_string(mesh.loaded) + " were loaded");
+  if (mesh.closed && (mesh.counts.size() != size || mesh.body.size() != size))
+    refuse("has " + std::to_string(size) + " triangles, but says of " + std::to_string(mesh.counts.size()) +
+           " how they count, and of " + std::to_string(mesh.body.size()) + " to which body they belong");
+  if (!(mesh.tolerance >= 0))
+    refuse("has a tolerance of " + std::to_string(mesh.tolerance) + " m, which must be 0 or more");
+  const enclosure_grid& cubes = mesh.enclosed;
+  if (cubes.bits.empty()) return;
+  const std::size_t words = std::size_t(cubes.size[0] / 32) * cubes.size[1] * cubes.size[2];
+  if (!(cubes.cube > 0) || !cubes.low.allFinite() || cubes.size[0] % 32 != 0 || words != cubes.bits.size())
+    refuse("has " + std::to_string(cubes.bits.size()) + " words of enclosed cubes, which are not those of its grid");
+}
 
 }  // namespace clearance

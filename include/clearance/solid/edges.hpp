@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The edges of a mesh, and the triangles on either side.
 
 #include <algorithm>
 #include <array>

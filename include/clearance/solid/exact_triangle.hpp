@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Exact distances to a triangle, for what must be proven about solids.
 
 #include <clearance/solid/vec3d.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A solid made of a function instead of a mesh.
 
 #include <clearance/solid/solid.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Points in double, on host and device.
 
 #include <clearance/ground/config.hpp>
 

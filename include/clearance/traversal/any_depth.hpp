@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A walk on the host through trees of any depth.
 
 #include <clearance/traversal/near_first.hpp>
 

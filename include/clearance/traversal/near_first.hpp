@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A walk that looks at the nearest child first, so that most of the others need no look.
 
 #include <clearance/concepts.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// The simplest walk through a tree, by calls of itself.
 
 #include <clearance/concepts.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// A walk through a tree without recursion, children in the order in which they are stored.
 
 #include <clearance/concepts.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Asks a tree whether anything is near enough.
 
 #include <clearance/concepts.hpp>
 

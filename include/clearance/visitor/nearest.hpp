@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Asks a tree which primitive is nearest.
 
 #include <clearance/concepts.hpp>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+// Boxes that are turned to fit what they enclose, as the volumes of a tree.
 
 #include <clearance/concepts.hpp>
 

@@ -20,6 +20,13 @@ def add(parser):
     parser.add_argument(
         "--image", action="append", default=[], metavar="TOPIC", help="a depth Image; may be given several times"
     )
+    parser.add_argument(
+        "--compressed-image",
+        action="append",
+        default=[],
+        metavar="TOPIC",
+        help="a CompressedImage that holds depth (compressedDepth); may be given several times",
+    )
     parser.add_argument("--joint-topic", action="append", metavar="TOPIC", help="JointStates (default: /joint_states)")
     parser.add_argument("--tf-topic", action="append", metavar="TOPIC", help="TFMessages (default: /tf and /tf_static)")
     play.add_frames(parser)
@@ -58,6 +65,7 @@ def run(asked):
         play.robot(asked),
         clouds=asked.cloud,
         images=asked.image,
+        compressed=asked.compressed_image,
         joint_topic=asked.joint_topic or "/joint_states",
         tf_topics=asked.tf_topic or ("/tf", "/tf_static"),
         name=asked.name,
@@ -78,7 +86,7 @@ def run(asked):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
     print(
-        f"listening on {', '.join(asked.cloud + asked.image)}; publishing {asked.name}/clearance",
+        f"listening on {', '.join(asked.cloud + asked.image + asked.compressed_image)}; publishing {asked.name}/clearance",
         file=sys.stderr,
         flush=True,
     )

@@ -7,8 +7,9 @@ if the recording is damaged (after the last whole frame), if no frame could be a
 
 import contextlib
 import pathlib
+import sys
 
-from clearance import playing
+from clearance import playing, words
 from clearance.commands import report
 from clearance.seeing import report as pages
 from clearance.seeing import rerun_file
@@ -45,6 +46,7 @@ def add_robot(parser):
     parser.add_argument(
         "--package", action="append", default=[], metavar="NAME=FOLDER", help="the folder of package://NAME"
     )
+    parser.add_argument("--gltf-up", choices=("y", "z"), help="which axis of glTF meshes is up (default: a note says)")
     parser.add_argument("--exclude-link", action="append", default=[], metavar="LINK", help="a link that is left out")
     parser.add_argument("--device", default="cpu", help="cpu, or cuda:0 and so on")
 
@@ -54,9 +56,7 @@ def add_frames(parser):
         "--camera-info", metavar="TOPIC", help="the CameraInfo of the images (default: camera_info beside each)"
     )
     parser.add_argument("--base-frame", help="the frame in which the robot's root link stands (default: the root link)")
-    parser.add_argument(
-        "--joint", action="append", default=[], metavar="NAME=VALUE", help="a joint that no JointState names"
-    )
+    words.add_joints(parser, "a joint that no JointState names")
     parser.add_argument(
         "--max-age", type=float, default=0.1, metavar="SECONDS", help="of joints and transforms (default: 0.1)"
     )
@@ -69,28 +69,15 @@ def add_frames(parser):
     parser.add_argument("--zero-is-missing", action="store_true", help="a point at the sensor is no point")
 
 
-def pairs(given, option, of=str):
-    """{name: value} of NAME=VALUE."""
-    found = {}
-    for each in given:
-        name, equals, value = each.partition("=")
-        try:
-            found[name] = of(value)
-        except ValueError:
-            equals = ""
-        if not name or not equals or not value:
-            raise ValueError(f"--{option} {each!r} is not NAME=VALUE")
-    return found
-
-
 def robot(asked):
     """Robot.from_urdf's arguments."""
     return {
         "file": asked.robot,
         "model": asked.model,
         "spheres": asked.spheres,
-        "packages": pairs(asked.package, "package"),
+        "packages": words.pairs(asked.package, "--package"),
         "exclude_links": asked.exclude_link,
+        "gltf_up": asked.gltf_up,
     }
 
 
@@ -99,7 +86,7 @@ def frames(asked):
     return {
         "camera_info": asked.camera_info,
         "base_frame": asked.base_frame,
-        "joints": pairs(asked.joint, "joint", float),
+        "joints": words.joints_of(asked),
         "max_age": asked.max_age,
         "nearest": asked.nearest,
         "farthest": asked.farthest,
@@ -107,16 +94,42 @@ def frames(asked):
     }
 
 
+def seconds(row):
+    """A row's stamp, without a float between."""
+    return "nan" if row.stamp_ns is None else f"{row.stamp_ns // 10**9}.{row.stamp_ns % 10**9:09d}"
+
+
 def sentence(row):
     """A row as a line."""
     if row.state in ("unknown", "no_data"):
-        return f"{row.stamp:.6f} {row.topic} {row.state}: {row.note or 'no valid point'}"
+        return f"{seconds(row)} {row.topic} {row.state}: {row.note or 'no valid point'}"
     note = f" ({row.note})" if row.note else ""
     return (
-        f"{row.stamp:.6f} {row.topic} {row.state}: {row.distance:.4f} m "
+        f"{seconds(row)} {row.topic} {row.state}: {row.distance:z.4f} m "
         f"(certainly {row.lower:.4f} to {row.upper:.4f}), "
         f"{row.link} to point {row.point:,}{note}"
     )
+
+
+class Printed:
+    """Lines to the terminal. If whoever reads them goes, and files are written too, those are finished all the same."""
+
+    def __init__(self, goes_on):
+        self.goes_on, self.gone = goes_on, False
+
+    def __call__(self, line):
+        try:
+            if not self.gone:
+                print(line, flush=True)
+        except BrokenPipeError:
+            if not self.goes_on:
+                raise
+            self.gone = True
+
+    def finish(self):
+        """Says at the end what was not heard."""
+        if self.gone:
+            raise BrokenPipeError
 
 
 def run(asked):
@@ -139,7 +152,8 @@ def run(asked):
     who = robot(asked)
     count = unknown = differ = 0
     least = None
-    rows, damage = [], None
+    rows, damage, played = [], None, None
+    say = Printed(asked.csv or asked.parquet or asked.report or asked.rerun)
     try:
         with contextlib.ExitStack() as files:
             into = [
@@ -154,14 +168,15 @@ def run(asked):
                 def each(row, sight):
                     scenes.add(sight.scene(margin=asked.margin), stamp=row.stamp)
 
-            for row in playing.play(asked.recording, who, check=asked.check, each=each, **options):
+            played = playing.play(asked.recording, who, check=asked.check, each=each, **options)
+            for row in played:
                 for write in into:
                     write(row)
                 if page:
                     rows.append(row)
                 if asked.rerun and row.state == "unknown":
                     scenes.add_unknown(sentence(row), stamp=row.stamp)
-                print(sentence(row), flush=True)
+                say(sentence(row))
                 count += 1
                 unknown += row.state in ("unknown", "no_data")
                 differ += not playing.agree(row)
@@ -171,13 +186,17 @@ def run(asked):
         damage = str(error)
         raise
     finally:
-        print(
+        notes = played.notes if played else []
+        for note in notes:
+            print(f"note: {note}", file=sys.stderr)
+        say(
             f"{count} frames, {unknown} of them unknown"
             + (f", {differ} of them differ from NumPy" if asked.check else "")
-            + (f"; the least is {least.distance:.4f} m at {least.stamp:.6f}" if least else "")
+            + (f"; the least is {least.distance:z.4f} m at {seconds(least)} on {least.topic}" if least else "")
         )
         if rows:
-            write_page(page, asked, rows, [damage] if damage else [], who, options)
+            write_page(page, asked, rows, [damage, *notes] if damage else notes, who, options)
+    say.finish()
     return 1 if differ or unknown == count else 0
 
 
@@ -187,9 +206,9 @@ def write_page(page, asked, rows, notes, who, options):
     drawn = {}
 
     def draw(row, sight):
-        drawn[row.stamp, row.topic] = png(render(sight.scene(margin=asked.margin), width=860, height=560)), ""
+        drawn[row.stamp_ns, row.topic] = png(render(sight.scene(margin=asked.margin), width=860, height=560)), ""
 
-    worst = {(rows[k].stamp, rows[k].topic): k for k in pages.worst(moments, asked.worst)}
+    worst = {(rows[k].stamp_ns, rows[k].topic): k for k in pages.worst(moments, asked.worst)}
     with contextlib.suppress(playing.Damaged):
         for _ in playing.play(asked.recording, who, each=draw, only=worst, **options):
             if len(drawn) == len(worst):

@@ -12,6 +12,8 @@ import pathlib
 
 import numpy as np
 
+from clearance import words
+
 from . import view
 
 
@@ -30,8 +32,7 @@ def add_pictures(parser):
     pictures.add_argument(
         "--trajectory", metavar="FILE", help="CSV: names of joints, then one row for each frame, or one for all"
     )
-    pictures.add_argument("--joints", metavar="NAME=VALUE,...", help="of joints without a column; others are at rest")
-    pictures.add_argument("--joint", metavar="NAME=VALUE", action="append", default=[], help="one of them")
+    words.add_joints(pictures, "a joint without a column")
     pictures.add_argument("--ignore-limits", action="store_true", help="joints may be outside their limits")
     pictures.add_argument("--intrinsics", metavar="FX,FY,CX,CY", help="of depth images, pixels")
     pictures.add_argument("--depth-scale", type=float, help="metres per unit of a depth image (default: 0.001)")
@@ -41,6 +42,7 @@ def add_pictures(parser):
     pictures.add_argument("--camera-link", metavar="LINK", help="the link that carries the camera")
     pictures.add_argument("--base-pose", metavar="X,Y,Z,QX,QY,QZ,QW", help="world-from-base")
     pictures.add_argument("--package", metavar="NAME=DIR", action="append", default=[], help="where package://NAME/ is")
+    pictures.add_argument("--gltf-up", choices=("y", "z"), help="which axis of glTF meshes is up (default: a note says)")
     pictures.add_argument("--geometry", choices=("collision", "visual"), default="collision")
     pictures.add_argument("--exclude-link", metavar="LINK", action="append", default=[])
     pictures.add_argument(
@@ -70,15 +72,14 @@ class Pictures:
         make, model = view.robot_maker(asked, asked.robot)
         self.robot, self.asked = make(model), asked
         self.names, self.rows = trajectory(asked.trajectory) if asked.trajectory else ([], [[]])
-        self.fixed = view.joints_of(asked.joints) | view.joints_of(",".join(asked.joint), "--joint")
-        self.pose, self.base = view.pose(asked.camera_pose, "--camera-pose"), view.pose(asked.base_pose, "--base-pose")
-        self.camera = tuple(view.numbers(asked.intrinsics, 4, "--intrinsics")) if asked.intrinsics else None
+        self.fixed = words.by_name(self.robot, words.joints_of(asked))
+        self.pose, self.base = words.pose(asked.camera_pose, "--camera-pose"), words.pose(asked.base_pose, "--base-pose")
+        self.camera = tuple(words.numbers(asked.intrinsics, 4, "--intrinsics")) if asked.intrinsics else None
 
     def of(self, moment):
         """A PNG, and a sentence: what the picture's own answer is, where it differs from the row."""
         from clearance import seeing
         from clearance.seeing import files
-        from clearance.seeing.page import joint_values
         from clearance.seeing.pictures import render
         from clearance.seeing.raster import png
 
@@ -88,10 +89,11 @@ class Pictures:
         if len(self.rows) != 1 and moment.number >= len(self.rows):
             return None, f"no picture: the trajectory has no row {moment.number}"
         row = self.rows[0 if len(self.rows) == 1 else moment.number]
-        joints = joint_values(self.robot, self.fixed | dict(zip(self.names, row)))
+        joints = self.fixed | dict(zip(self.names, row))
         pose = np.eye(4) if self.pose is None else self.pose
         if self.asked.camera_link:
-            pose = np.asarray(self.robot.link_pose(self.asked.camera_link, joints, self.base)) @ pose
+            carrier = self.robot.link_pose(self.asked.camera_link, joints, self.base, self.asked.ignore_limits)
+            pose = np.asarray(carrier) @ pose
         if (
             file.suffix.lower() in (".png", ".tif", ".tiff")
             or file.suffix.lower() == ".npy"
@@ -120,7 +122,7 @@ class Pictures:
         within = max(moment.upper - moment.lower, float(answer.upper) - float(answer.lower), 1e-4)
         differs = not (apart <= within or moment.distance == answer.distance)
         said = (
-            f"the picture's own answer is {answer.distance:.4f} m: options or files differ from those of the row"
+            f"the picture's own answer is {answer.distance:z.4f} m: options or files differ from those of the row"
             if differs
             else ""
         )
@@ -188,7 +190,7 @@ def write(output, moments, asked, *, told, notes=(), pictures=None, title, to=No
     for note in notes:
         print(f"note: {note}", file=to)
     least = min((m.lower for m in moments), default=math.nan)
-    print(f"{len(moments)} frames, least lower end {least:.3f} m; written: {output}", file=to)
+    print(f"{len(moments)} frames, least lower end {least:z.3f} m; written: {output}", file=to)
 
 
 def pictures_of(asked, moments):

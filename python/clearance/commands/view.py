@@ -5,11 +5,13 @@ Without --rerun, --picture or --page it prints the number and writes clearance.p
 scene of its own: an arm before a table with boxes.
 """
 
-import math
 import pathlib
 import tempfile
 
 import numpy as np
+
+from clearance import words
+from clearance.words import numbers, pairs, pose
 
 
 def add(parser):
@@ -31,9 +33,10 @@ def add(parser):
         metavar="X,Y,Z,QX,QY,QZ,QW",
         help="world-from-cloud or world-from-camera (default: the world's origin)",
     )
-    parser.add_argument("--joints", metavar="NAME=VALUE,...", help="radians or metres; other joints are at rest")
+    words.add_joints(parser, "a joint; others are at rest")
     parser.add_argument("--base", metavar="X,Y,Z,QX,QY,QZ,QW", help="world-from-base (default: the world's origin)")
     parser.add_argument("--package", metavar="NAME=DIR", action="append", default=[], help="where package://NAME/ is")
+    parser.add_argument("--gltf-up", choices=("y", "z"), help="which axis of glTF meshes is up (default: a note says)")
     parser.add_argument("--geometry", choices=("collision", "visual"), default="collision")
     parser.add_argument(
         "--exclude-link", metavar="LINK", action="append", default=[], help="leave out this link's geometry"
@@ -56,55 +59,6 @@ def add(parser):
     parser.add_argument("--host", default="127.0.0.1", help="of the live page (default: only this machine)")
 
 
-def numbers(text, count, option):
-    """Finite numbers between commas; count None: one or more."""
-    try:
-        values = [float(word) for word in text.split(",")]
-    except ValueError:
-        values = []
-    if not values or count and len(values) != count or not all(map(math.isfinite, values)):
-        raise ValueError(f"{option} takes {count or 'one or more'} numbers between commas, not {text!r}")
-    return values
-
-
-def pose(text, option):
-    """A matrix of x,y,z,qx,qy,qz,qw; None for None."""
-    if text is None:
-        return None
-    x, y, z, *q = numbers(text, 7, option)
-    length = math.sqrt(sum(v * v for v in q))
-    if abs(length - 1) > 1e-3:
-        raise ValueError(f"{option}: the quaternion has the length {length:.6g}, not 1")
-    i, j, k, w = (v / length for v in q)
-    return np.array(
-        [
-            [1 - 2 * (j * j + k * k), 2 * (i * j - k * w), 2 * (i * k + j * w), x],
-            [2 * (i * j + k * w), 1 - 2 * (i * i + k * k), 2 * (j * k - i * w), y],
-            [2 * (i * k - j * w), 2 * (j * k + i * w), 1 - 2 * (i * i + j * j), z],
-            [0, 0, 0, 1],
-        ]
-    )
-
-
-def pairs(words, option):
-    """{name: text} of NAME=TEXT words."""
-    out = {}
-    for word in words:
-        name, equals, value = word.partition("=")
-        if not equals or not name or name in out:
-            raise ValueError(f"{option} takes NAME=VALUE once for each name, not {word!r}")
-        out[name] = value
-    return out
-
-
-def joints_of(text, option="--joints"):
-    """{joint: value}."""
-    if text is None:
-        return {}
-    given = pairs([word for word in text.split(",") if word], option)
-    return {name: numbers(value, 1, f"{option} {name}=")[0] for name, value in given.items()}
-
-
 def robot_maker(asked, file):
     """A function (model) -> robot, and the model that was asked for."""
     import clearance
@@ -121,6 +75,7 @@ def robot_maker(asked, file):
             geometry=asked.geometry,
             packages=packages,
             exclude_links=asked.exclude_link,
+            gltf_up=asked.gltf_up,
         )
 
     return make, asked.model or ("spheres" if asked.spheres is not None else "triangles")
@@ -160,7 +115,6 @@ def seen_of(asked, say):
 def run(asked):
     from clearance import seeing
     from clearance.seeing import demo
-    from clearance.seeing.page import joint_values
 
     def say(note):
         print(f"note: {note}")
@@ -168,14 +122,14 @@ def run(asked):
     for option, file, end in (("--picture", asked.picture, ".png"), ("--rerun", asked.rerun, ".rrd")):
         if file is not None and pathlib.Path(file).suffix.lower() != end:
             raise ValueError(f"{option} writes a {end} file, not {file}")
-    joints = joints_of(asked.joints)
+    joints = words.joints_of(asked)
     with tempfile.TemporaryDirectory() as folder:
         if asked.robot is None:
             if asked.cloud or asked.depth:
                 raise ValueError("--cloud and --depth need a robot: clearance view ROBOT.urdf ...")
             make, model = robot_maker(asked, demo.write_urdf(folder))
             seen = {"depth": demo.depth_image(), "intrinsics": demo.CAMERA, "camera_pose": demo.camera_pose()}
-            joints = demo.JOINTS | joints
+            joints = demo.JOINTS | joints if isinstance(joints, dict) else joints
             say("a scene made by code: an arm before a table; clearance view ROBOT.urdf --cloud FILE shows yours")
         else:
             make, model = robot_maker(asked, asked.robot)
@@ -183,12 +137,17 @@ def run(asked):
         robot = make(model)
         for note in robot.notes:
             say(note)
+        joints = words.by_name(robot, joints)
         resting = [name for name in robot.joints if name not in joints]
+        for name in joints:
+            if name in robot.mimics:
+                say(f"joint {name} has a value of its own here, which wins over <mimic>")
         if resting:
             say(f"at rest: {', '.join(resting)}")
         what = {
             **seen,
-            "joints": joint_values(robot, joints),
+            "joints": joints,
+            "rest": True,
             "base": pose(asked.base, "--base"),
             "margin": asked.margin,
             "zones": numbers(asked.zones, None, "--zones") if asked.zones else None,

@@ -51,20 +51,24 @@ def quaternion(matrix):
 
 
 def joint_values(robot, joints):
-    """Of all joints, in their order; those that are not named are at rest."""
-    values = np.array(robot.rest, float)
+    """Of all joints, in their order, where sliders begin: at rest, unless they are named. And {name: value} of joints
+    that follow others and are named."""
+    values, own = np.array(robot.rest, float), {}
     if joints is None:
-        return values
+        return values, own
     if isinstance(joints, dict):
         for name, value in joints.items():
-            if name not in robot.joints:
+            if name in robot.mimics:
+                own[name] = value
+            elif name not in robot.joints:
                 raise ValueError(f'clearance: the robot has no joint "{name}" (it has: {", ".join(robot.joints)})')
-            values[robot.joints.index(name)] = value
-        return values
+            else:
+                values[robot.joints.index(name)] = value
+        return values, own
     given = np.asarray(joints, float)
     if given.shape != values.shape:
         raise ValueError(f"clearance: joints have the shape {values.shape}, not {given.shape}")
-    return given.copy()
+    return given.copy(), own
 
 
 class Page:
@@ -87,6 +91,7 @@ class Page:
         remake=None,
         device="cpu",
         ignore_limits=False,
+        rest=False,
         **what,
     ):
         """remake: a function (model) -> robot, for the switch of the model; without it there is none."""
@@ -96,9 +101,9 @@ class Page:
         self.zones, self.farthest, self.most = zones, farthest, most
         self.fixed = None
         if poses is not None or not self._has_joints():
-            self.fixed, self.values = poses_of(robot, joints, poses, base), np.empty(0)
+            self.fixed, self.values = poses_of(robot, joints, poses, base, rest=rest), np.empty(0)
         else:
-            self.values = joint_values(robot, joints)
+            self.values, self.own = joint_values(robot, joints)
         self.query = _core.Query(robot, _core.MinDistance(), device=device)
         self.margin = margin if margin is not None else 0.05
         self.wake, self.ended, self.lock = threading.Condition(), False, threading.Lock()
@@ -136,6 +141,8 @@ class Page:
             return False
 
     def _poses(self, values):
+        if self.fixed is None and self.own:
+            values = dict(zip(self.robot.joints, values)) | self.own
         return (
             self.fixed if self.fixed is not None else poses_of(self.robot, values, None, self.base, self.ignore_limits)
         )

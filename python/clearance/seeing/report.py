@@ -177,21 +177,35 @@ def _csv_rows(text, file):
     return rows, []
 
 
+def nearness(m):
+    """What is compared of two moments: the lower end, and, because that is 0 in each collision, the distance."""
+    return m.lower, m.distance
+
+
+def by_topic(moments):
+    """{topic: the indices of its moments}, in the order of time; rows of clearance run have the topic None."""
+    of = {}
+    for k, m in enumerate(moments):
+        of.setdefault(m.topic, []).append(k)
+    return of
+
+
 def worst(moments, count):
-    """The moments with the lowest lower ends of the bracket: first those that are no higher than both neighbours."""
+    """The nearest moments: first the nearest of all, then those that are no farther than their topic's neighbours."""
+    dips = set()
+    for its in by_topic(moments).values():
+        for i, k in enumerate(its):
+            beside = [moments[j] for j in its[max(0, i - 1) : i + 2] if moments[j].state not in BLIND]
+            if moments[k].state not in BLIND and all(nearness(moments[k]) <= nearness(other) for other in beside):
+                dips.add(k)
     known = [k for k, m in enumerate(moments) if m.state not in BLIND]
-
-    def dip(k):
-        beside = [moments[j].lower for j in (k - 1, k + 1) if 0 <= j < len(moments) and moments[j].state not in BLIND]
-        return all(moments[k].lower <= other for other in beside)
-
-    order = sorted(known, key=lambda k: (not dip(k), moments[k].lower, k))
-    return sorted(order[:count], key=lambda k: (moments[k].lower, k))
+    order = sorted(known, key=lambda k: (k not in dips, nearness(moments[k]), k))
+    return sorted(order[:count], key=lambda k: (nearness(moments[k]), k))
 
 
-def _name(m):
+def _name(m, with_topic=True):
     if m.stamp is not None:
-        return f"{m.stamp:.3f} s" + (f", {m.topic}" if m.topic else "")
+        return f"{m.stamp:.3f} s" + (f", {m.topic}" if m.topic and with_topic else "")
     return f"frame {m.number}" + (f", {pathlib.Path(m.file).name}" if m.file else "")
 
 
@@ -229,14 +243,21 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
         else [m.number for m in moments]
     )
     body = [f"<h1>{html.escape(title)}</h1>"]
-    least = moments[chosen[0]] if chosen else None
     verdict = []
-    if least:
+    topics = by_topic(moments)
+    for topic, its in topics.items():
+        near = [moments[k] for k in its if moments[k].state not in BLIND]
+        if not near:
+            continue
+        least = min(near, key=lambda m: (m.distance, m.lower))
         verdict.append(
-            f"The least distance is <b>{metres(least.distance)}</b> (certainly {least.lower:.3f} to "
-            f"{least.upper:.3f}), "
-            f"{html.escape(least.link or 'no part')}, at {html.escape(_name(least))}."
+            f"The least distance{f' of {html.escape(topic)}' if len(topics) > 1 and topic else ''} is "
+            f"<b>{metres(least.distance)}</b> (certainly {least.lower:z.3f} to {least.upper:z.3f}), "
+            f"{html.escape(least.link or 'no part')}, at {html.escape(_name(least, len(topics) == 1))}."
         )
+        lowest = min(near, key=lambda m: m.lower)
+        if lowest.lower < least.lower:
+            verdict.append(f"It is certainly above {lowest.lower:z.3f} m only, at {html.escape(_name(lowest))}.")
     if margin is not None:
         below = sum(not m.lower > margin for m in known)
         verdict.append(
@@ -255,13 +276,13 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
     if hidden:
         nearest = min(hidden, key=lambda m: m.unseen[1])
         reach = sum(m.reaches for m in hidden)
-        away = f"certainly at least {nearest.unseen[1]:.3f} m" if math.isfinite(nearest.unseen[1]) else "as far as asked"
+        away = f"certainly at least {nearest.unseen[1]:z.3f} m" if math.isfinite(nearest.unseen[1]) else "as far as asked"
         verdict.append(
             f"What no camera sees is {away} away, at {html.escape(_name(nearest))}"
             + (f"; the robot <b>reaches into it</b> in {reach:,} frames" if reach else "")
             + "."
         )
-    body.append("<p class=verdict>" + " ".join(verdict) + "</p>")
+    body += [f"<p class=verdict>{each}</p>" for each in verdict]
     body += [f"<p class=note>{html.escape(note)}</p>" for note in notes]
 
     body.append("<h2>What was asked</h2>")
@@ -311,8 +332,8 @@ def page(moments, *, asked=(), margin=None, notes=(), pictures=None, count=3, ti
         )
         point = f" to point {m.point:,}" if m.point is not None else ""
         body.append(
-            f"<div>{image}<p><b>{number}. {metres(m.distance)}</b> (certainly {m.lower:.3f} to "
-            f"{m.upper:.3f}), {m.state}, "
+            f"<div>{image}<p><b>{number}. {metres(m.distance)}</b> (certainly {m.lower:z.3f} to "
+            f"{m.upper:z.3f}), {m.state}, "
             f"{html.escape(m.link or '')}{point}<br>{html.escape(_name(m))}{where}"
             + (f"<br><i>{html.escape(sentence)}</i>" if sentence else "")
             + "</p></div>"

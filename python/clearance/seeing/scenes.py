@@ -65,7 +65,7 @@ def metres(value):
     """A length in words: 0.164 m."""
     if value != value:
         return "unknown"
-    return ("-" if value < 0 else "") + "infinite" if np.isinf(value) else f"{value:.3f} m"
+    return ("-" if value < 0 else "") + "infinite" if np.isinf(value) else f"{value:z.3f} m"
 
 
 def number(result):
@@ -207,14 +207,14 @@ def parts_of(robot, poses, nearest=None):
     ]
 
 
-def poses_of(robot, joints, poses, base, ignore_limits=False):
+def poses_of(robot, joints, poses, base, ignore_limits=False, rest=False):
     """World-from-part of every part."""
     if poses is not None:
         if joints is not None:
             raise ValueError("clearance: give joints= or poses=, not both")
         poses = on_host(poses, "poses").astype(float)
     else:
-        poses = np.asarray(robot.poses(joints, base, ignore_limits))
+        poses = np.asarray(robot.poses(joints, base, ignore_limits, rest))
     if poses.shape != (len(robot), 4, 4):
         raise ValueError(
             f"clearance: one configuration is drawn, so poses have the shape ({len(robot)}, 4, 4); not {poses.shape}"
@@ -243,6 +243,7 @@ def scene(
     most=60000,
     colour="distance",
     ignore_limits=False,
+    rest=False,
     **seen,
 ):
     """What is to be seen of one frame.
@@ -254,7 +255,7 @@ def scene(
     said in the title.
     """
     seen = Seen(points, **seen)
-    placed = poses_of(robot, joints, poses, base, ignore_limits)
+    placed = poses_of(robot, joints, poses, base, ignore_limits, rest)
     if result is None:
         result = _core.Query(robot, _core.MinDistance())(poses=placed, **seen.asked)
     return compose(robot, seen, placed, result, zones=zones, margin=margin, farthest=farthest, most=most, colour=colour)

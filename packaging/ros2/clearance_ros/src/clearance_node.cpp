@@ -5,7 +5,7 @@
 //
 // robot_state_publisher places the robot: each link with geometry is a frame of TF. What cannot be asked is UNKNOWN,
 // with a note, and a lower end of 0. Untried with a real ROS 2.
-#include <clearance/backend/host.hpp>
+#include <clearance/backends/host.hpp>
 #include <clearance/io/robot.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>
@@ -118,9 +118,12 @@ class clearance_node : public rclcpp::Node {
 
   template <class Pixel>
   clearance::ray_image<Pixel> pixels(const Image& message) const {
-    if (message.step % sizeof(Pixel) != 0) throw std::invalid_argument("the image's rows end within a pixel");
+    const auto step =
+        clearance::row_step(message.height, message.width * sizeof(Pixel), message.step, message.data.size());
+    if (!step) throw std::invalid_argument("the image has other bytes than its size and step say");
+    if (*step % sizeof(Pixel) != 0) throw std::invalid_argument("the image's rows end within a pixel");
     const std::span all(reinterpret_cast<const Pixel*>(message.data.data()), message.data.size() / sizeof(Pixel));
-    return camera_->rays.image(all, message.width, message.height, message.step / sizeof(Pixel));
+    return camera_->rays.image(all, message.width, message.height, *step / sizeof(Pixel));
   }
 
   Eigen::Isometry3d placed(const std::string& frame, const std_msgs::msg::Header& header) {

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+// Clouds with their poses, of one kind or of many, and how their points are numbered.
+
+#include <clearance/concepts/capsule.hpp>
+#include <clearance/frames/frame.hpp>
+#include <clearance/points/point_span.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <variant>
+
+namespace clearance {
+
+/// A point source and its pose, world-from-source.
+template <point_source S>
+struct placed {
+  S source;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+// Needed because clang before 17 deduces no arguments from aggregates.
+template <point_source S>
+placed(S) -> placed<S>;
+template <point_source S>
+placed(S, Eigen::Isometry3d) -> placed<S>;
+
+namespace detail {
+
+template <class T>
+struct is_cloud : std::bool_constant<point_source<T> || std::is_convertible_v<const T&, point_span>> {};
+template <point_source S>
+struct is_cloud<placed<S>> : std::true_type {};
+template <class... T>
+struct is_cloud<std::tuple<T...>> : std::bool_constant<(is_cloud<T>::value && ...)> {};
+template <class... T>
+struct is_cloud<std::variant<T...>> : std::bool_constant<(is_cloud<T>::value && ...)> {};
+template <class T>
+  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t); }
+struct is_cloud<T> : is_cloud<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>> {};
+
+template <class T>
+inline constexpr bool one_in_each_place = false;
+template <class T>
+  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) &&
+              requires(const T t) { std::begin(t), std::size(t); }
+inline constexpr bool one_in_each_place<T> =
+    requires(std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))> cloud) { cloud.source, cloud.pose; };
+
+}  // namespace detail
+
+/// What callers may pass as clouds: a source, a placed one or a vector of points; a range, tuple or variant of these.
+template <class T>
+concept clouds_of_any_kind = detail::is_cloud<T>::value;
+
+/// Calls `f(source, pose)` for each cloud, in order.
+template <clouds_of_any_kind Clouds, class F>
+void for_each_cloud(const Clouds& clouds, F&& f) {
+  static const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  if constexpr (point_source<Clouds>) {
+    f(clouds, here);
+  } else if constexpr (requires { clouds.source, clouds.pose; }) {
+    f(clouds.source, clouds.pose);
+  } else if constexpr (std::is_convertible_v<const Clouds&, point_span>) {
+    f(point_span(clouds), here);
+  } else if constexpr (requires { std::tuple_size<Clouds>::value; }) {
+    std::apply([&](const auto&... each) { (for_each_cloud(each, f), ...); }, clouds);
+  } else if constexpr (requires { std::variant_size<Clouds>::value; }) {
+    std::visit([&](const auto& it) { for_each_cloud(it, f); }, clouds);
+  } else {
+    for (const auto& cloud : clouds) for_each_cloud(cloud, f);
+  }
+}
+
+/// The number of clouds. A range that knows its size and holds one cloud per element is not read: reading may load one.
+template <class Clouds>
+std::size_t count_clouds(const Clouds& clouds) {
+  if constexpr (detail::one_in_each_place<Clouds>) return std::size(clouds);
+  std::size_t n = 0;
+  for_each_cloud(clouds, [&](const auto&, const Eigen::Isometry3d&) { ++n; });
+  return n;
+}
+
+/// The number of points of all clouds.
+template <class Clouds>
+std::size_t count_points(const Clouds& clouds) {
+  std::size_t points = 0;
+  for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
+  return points;
+}
+
+/// May the points of some cloud be elsewhere? Then no point is certainly anywhere.
+template <class Clouds>
+bool any_vague(const Clouds& clouds) {
+  bool some = false;
+  for_each_cloud(clouds, [&]<class S>(const S&, const Eigen::Isometry3d&) { some = some || vague_source<S>; });
+  return some;
+}
+
+/// `clouds_of_any_kind<T>` with reasons.
+template <class T>
+consteval bool explain_clouds() {
+  if constexpr (!clouds_of_any_kind<T>) {
+    if constexpr (requires(const T t) { t.source, t.pose; })
+      explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
+    else if constexpr (requires(const T t) { *std::begin(t); })
+      explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();
+    else if constexpr (requires(const T t) {
+                         t.size();
+                         t[0];
+                       })
+      explain_point_source<T>();
+    else
+      static_assert(
+          clouds_of_any_kind<T>,
+          "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
+  }
+  return clouds_of_any_kind<T>;
+}
+/// The same for everything that a call is given as clouds.
+template <class First, class... Rest>
+consteval bool explain_given() {
+  constexpr bool fits = sizeof...(Rest) == 0 ||
+                        (sizeof...(Rest) == 1 && (std::is_convertible_v<const Rest&, const Eigen::Isometry3d&> && ...));
+  static_assert(fits,
+                "several clouds are a vector or a tuple of placed ones, and one may be followed by its pose, an "
+                "Eigen::Isometry3d");
+  if constexpr (!fits)
+    return false;
+  else if constexpr (sizeof...(Rest) == 1)
+    return explain_point_source<First>();
+  else
+    return explain_clouds<First>();
+}
+
+/// The clouds of a call, as they were given. A source and its pose become a placed source.
+template <class Clouds>
+const Clouds& as_clouds(const Clouds& clouds) {
+  static_assert(explain_given<Clouds>());
+  return clouds;
+}
+template <class S, class Pose>
+auto as_clouds(const S& source, const Pose& pose) {
+  static_assert(explain_given<S, Pose>());
+  return placed<S>{source, pose};
+}
+
+namespace frames {
+
+/// Throws std::invalid_argument if there is not one minimum per part.
+inline void check_room(std::size_t parts, std::size_t minima) {
+  if (minima != parts)
+    throw std::invalid_argument("clearance: there are " + std::to_string(parts) + " parts, but room for " +
+                                std::to_string(minima) + " minima");
+}
+
+/// One cloud of a frame: its number, that of its first point among all clouds' points, and whether it is the last.
+struct turn {
+  std::uint32_t cloud, first;
+  bool last;
+};
+
+/// Goes through a frame cloud by cloud: places the parts in each and calls `f(source, turn)`; without clouds, once with
+/// no points. Returns the number of points. Throws std::invalid_argument if the number of poses is wrong, a pose is not
+/// rigid, or there are more than 2^32 - 2 points.
+template <class Clouds, class F>
+std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> facts,
+                            std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, F f) {
+  static_assert(explain_clouds<Clouds>());
+  frame.start(facts, poses);
+  const std::size_t count = count_clouds(clouds);
+  std::uint64_t points = 0;
+  std::uint32_t cloud = 0;
+  const auto next = [&](const auto& source, const Eigen::Isometry3d& pose) {
+    const std::uint64_t size = source.size();
+    if (size >= ~std::uint32_t(0) - points)
+      throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
+    frame.put(facts, pose, cloud, rounding_of(source));
+    f(source, turn{cloud, std::uint32_t(points), cloud + 1 >= count});
+    ++cloud, points += size;
+  };
+  if (count == 0) next(point_span{}, Eigen::Isometry3d::Identity());
+  for_each_cloud(clouds, next);
+  return points;
+}
+
+}  // namespace frames
+
+}  // namespace clearance

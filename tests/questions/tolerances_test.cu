@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// On a device, too, each part's own gap and tolerance is taken from its own distance.
+#include "questions/tolerances.hpp"
+#include "support/product_device.cuh"
+
+#include <clearance/device.cuh>
+
+namespace tolerances_test {
+
+using namespace testing;
+
+TEST_CASE("On a device a robot is at least as far as its parts, each less its own gap and tolerance") {
+  rule_of_slop rule;
+  dice d(81);
+  for (int n = 0; n < 40; ++n) {
+    const bool any = n % 6 != 5;
+    const std::string what = "robot " + std::to_string(n);
+    rule.least(clearance::device{}, sloppy_spheres<clearance::sphere>(d, any), d, any, what);
+    rule.least(clearance::device{}, sloppy_solids(d, any), d, any, what + ", solids");
+  }
+  CHECK(rule.other >= 10);
+}
+
+TEST_CASE("More parts than a kernel takes, and several devices, take each part's own, too") {
+  verdict v;
+  dice d(82);
+  const clearance::device gpu;
+  const clearance::devices both{0, 0};
+  for (int n = 0; n < 6; ++n) {
+    std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>> parts;
+    for (int k = 0; k < 70; ++k)
+      parts.push_back(
+          with_slop(d, clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 6, 0.1))), true));
+    const clearance::model model(std::move(parts));
+    const auto poses = some_poses(d, 70);
+    const auto points = d.points(20000, 3);
+    const auto expected = ask(clearance::host{}, model, poses, points, clearance::min_distance_per_part{}).all;
+    v.require(same_result(ask(clearance::host{}, model, poses, points, clearance::min_distance{}), expected), "host",
+              n);
+    v.require(same_result(ask(gpu, model.on(gpu), poses, points, clearance::min_distance{}), expected), "device", n);
+    v.require(same_result(ask(both, model.on(both), poses, points, clearance::min_distance{}), expected), "devices", n);
+    v.require(same_result(ask(gpu, model.on(gpu), poses, points, clearance::min_distances{}).of[0], expected),
+              "many configurations", n);
+  }
+}
+
+}  // namespace tolerances_test
