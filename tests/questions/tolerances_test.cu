@@ -26,13 +26,14 @@ TEST_CASE("More parts than a kernel takes, and several devices, take each part's
   dice d(82);
   const clearance::device gpu;
   const clearance::devices both{0, 0};
+  constexpr int most = clearance::scan::most_parts + 20;
   for (int n = 0; n < 6; ++n) {
     std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>>> parts;
-    for (int k = 0; k < 70; ++k)
+    for (int k = 0; k < most; ++k)
       parts.push_back(
           with_slop(d, clearance::make_part(clearance::build<clearance::sphere>(random_spheres(d, 6, 0.1))), true));
     const clearance::model model(std::move(parts));
-    const auto poses = some_poses(d, 70);
+    const auto poses = some_poses(d, most);
     const auto points = d.points(20000, 3);
     const auto expected = ask(clearance::host{}, model, poses, points, clearance::min_distance_per_part{}).all;
     v.require(same_result(ask(clearance::host{}, model, poses, points, clearance::min_distance{}), expected), "host",
@@ -41,6 +42,31 @@ TEST_CASE("More parts than a kernel takes, and several devices, take each part's
     v.require(same_result(ask(both, model.on(both), poses, points, clearance::min_distance{}), expected), "devices", n);
     v.require(same_result(ask(gpu, model.on(gpu), poses, points, clearance::min_distances{}).of[0], expected),
               "many configurations", n);
+  }
+}
+
+TEST_CASE("A robot that moves is as far as its parts, each less its own, whichever of them the last frame looked for") {
+  rule_of_slop rule;
+  dice d(83);
+  for (int n = 0; n < 6; ++n) {
+    const auto model = sloppy_spheres<clearance::sphere>(d, true);
+    const clearance::device gpu;
+    const auto there = model.on(gpu);
+    clearance::query query(gpu, there, clearance::min_distance{});
+    const std::size_t parts = model.view().size();
+    for (int frame = 0; frame < 30; ++frame) {
+      auto poses = some_poses(d, parts);
+      // The parts lie apart, and another one is the nearest: most of them are not looked for to the end.
+      for (std::size_t k = 0; k < parts; ++k) poses[k].translation().x() += 2.0 * double(k);
+      const std::size_t near = d.below(unsigned(parts));
+      auto points = d.points(5000, 1);
+      for (vec3& p : points)
+        p = clearance::scaled(d.number(1, 1.4) / std::max(0.1f, clearance::length(p)), p), p.x += 2.0f * float(near);
+      const clearance::point_span cloud(points);
+      const auto expected = ask(clearance::host{}, model, poses, cloud, clearance::min_distance{});
+      rule.v.require(same_result(query(poses, cloud), expected), "robot", n, "frame", frame);
+      if (frame % 10 == 9) query.forget();
+    }
   }
 }
 

@@ -91,20 +91,24 @@ class last_frame {
     }
   }
 
-  /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own bound:
-  /// `no_bound` if one part has none, else 0.
+  /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own, that is the
+  /// least, or `no_bound` if one part has none and is looked for however far it is.
   static __device__ std::uint32_t found(std::uint32_t parts) {
-    auto& s = memory_of_block<Tally>().answer;
+    auto& block = memory_of_block<Tally>();
+    auto& s = block.answer;
     const std::uint32_t lane = threadIdx.x & 31;
+    std::uint32_t bound = no_bound;
+    bool all = true;
     if constexpr (per_part) {
-      bool all = true;
-      for (std::uint32_t k = lane; k < parts; k += 32) all &= s.bound[k] != no_bound;
-      return __all_sync(all_lanes, all) ? 0 : no_bound;
-    } else {
-      const std::uint32_t bound = least_of(all_lanes, lane < warps ? s.seed_of_warp[lane] : no_bound);
-      if (threadIdx.x == 0) s.bound[0] = bound;
-      return bound;
+      for (std::uint32_t k = lane; k < parts; k += 32)
+        bound = lower_of(bound, s.bound[k]), all &= s.bound[k] != no_bound;
+      all = __all_sync(all_lanes, all) || block.head.answer.extra != nullptr;
+    } else if (lane < warps) {
+      bound = s.seed_of_warp[lane];
     }
+    bound = least_of(all_lanes, bound);
+    if (threadIdx.x == 0) s.bound[Tally::common] = bound;
+    return all ? bound : no_bound;
   }
 
  private:
@@ -181,8 +185,11 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
     }
   }
   __syncthreads();
-  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads)
-    atomicMin(&s.bound[k], fresh(a.answer.state->bound[k]));
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) {
+    const std::uint32_t known = lower_of(s.bound[k], fresh(a.answer.state->bound[k]));
+    s.bound[k] = known;
+    if constexpr (per_part) atomicMin(&s.bound[Tally::common], known);
+  }
 }
 
 }  // namespace clearance::minimum
