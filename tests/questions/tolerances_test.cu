@@ -45,29 +45,55 @@ TEST_CASE("More parts than a kernel takes, and several devices, take each part's
   }
 }
 
+namespace {
+
+/// The parts lie apart, and another one is the nearest in each frame: most of them are not looked for to the end.
+template <class Model>
+void moves(const Model& model, dice& d, verdict& v, int n) {
+  const clearance::device gpu;
+  const auto there = model.on(gpu);
+  clearance::query query(gpu, there, clearance::min_distance{});
+  const std::size_t parts = model.view().size();
+  for (int frame = 0; frame < 30; ++frame) {
+    auto poses = some_poses(d, parts);
+    for (std::size_t k = 0; k < parts; ++k) poses[k].translation().x() += 2.0 * double(k);
+    const std::size_t near = d.below(unsigned(parts));
+    auto points = d.points(frame % 7 == 6 ? 0 : 5000, 1);
+    for (vec3& p : points)
+      p = clearance::scaled(d.number(1, 1.4) / std::max(0.1f, clearance::length(p)), p), p.x += 2.0f * float(near);
+    const clearance::point_span cloud(points), half(std::span(points).first(points.size() / 2));
+    const auto expected = ask(clearance::host{}, model, poses, cloud, clearance::min_distance{});
+    v.require(same_result(query(poses, cloud), expected), "robot", n, "frame", frame);
+    const std::tuple two(half, clearance::placed{cloud, d.pose(0.1)});
+    v.require(same_result(query(poses, two), ask(clearance::host{}, model, poses, two, clearance::min_distance{})),
+              "robot", n, "frame", frame, "of two clouds");
+    if (frame % 10 == 9) query.forget();
+  }
+}
+
+}  // namespace
+
 TEST_CASE("A robot that moves is as far as its parts, each less its own, whichever of them the last frame looked for") {
-  rule_of_slop rule;
+  verdict v;
   dice d(83);
   for (int n = 0; n < 6; ++n) {
-    const auto model = sloppy_spheres<clearance::sphere>(d, true);
-    const clearance::device gpu;
-    const auto there = model.on(gpu);
-    clearance::query query(gpu, there, clearance::min_distance{});
-    const std::size_t parts = model.view().size();
-    for (int frame = 0; frame < 30; ++frame) {
-      auto poses = some_poses(d, parts);
-      // The parts lie apart, and another one is the nearest: most of them are not looked for to the end.
-      for (std::size_t k = 0; k < parts; ++k) poses[k].translation().x() += 2.0 * double(k);
-      const std::size_t near = d.below(unsigned(parts));
-      auto points = d.points(5000, 1);
-      for (vec3& p : points)
-        p = clearance::scaled(d.number(1, 1.4) / std::max(0.1f, clearance::length(p)), p), p.x += 2.0f * float(near);
-      const clearance::point_span cloud(points);
-      const auto expected = ask(clearance::host{}, model, poses, cloud, clearance::min_distance{});
-      rule.v.require(same_result(query(poses, cloud), expected), "robot", n, "frame", frame);
-      if (frame % 10 == 9) query.forget();
-    }
+    moves(sloppy_spheres<clearance::sphere>(d, true), d, v, n);
+    moves(sloppy_solids(d, true), d, v, n);
   }
+}
+
+TEST_CASE("On a device, too, nothing is known of a robot without parts") {
+  const clearance::device gpu;
+  dice d(84);
+  const auto robot = sloppy_spheres<clearance::sphere>(d, true);
+  const clearance::model_view<std::remove_cvref_t<decltype(robot)>::view_type> no_parts{nullptr, {}, 0, 0};
+  const std::span<const Eigen::Isometry3d> no_poses;
+  const auto points = d.points(3000, 1);
+  const clearance::point_span cloud(points);
+  const auto nearest = ask(gpu, no_parts, no_poses, cloud, clearance::min_distance{});
+  const auto each = ask(gpu, no_parts, no_poses, cloud, clearance::min_distance_per_part{});
+  CHECK((nearest.state == clearance::state::no_data && nearest.valid == points.size()));
+  CHECK((each.all.state == clearance::state::no_data && each.parts.empty()));
 }
 
 }  // namespace tolerances_test

@@ -103,7 +103,8 @@ struct one_minimum {
   }
 };
 
-// The end of a frame if every part has a bound and a minimum.
+// The end of a frame if every part has a bound and a minimum. With `extra` a part's minimum may be missing or too far,
+// if it decides nothing.
 
 template <class Tally>
 struct part_minima {
@@ -206,7 +207,9 @@ struct least {
   };
 
   struct memory {
-    std::uint32_t bound[common + 1];  ///< ordered(): the least that this block knows, at times the least of all blocks.
+    /// ordered(): how far each part is looked for. It is the least distance that this block knows, and at times that of
+    /// all blocks, or with `extra` a reach beyond the least of all, which no other block hears of.
+    std::uint32_t bound[common + 1];
     std::uint32_t seed_of_warp[scan::warps];
     record best[slots];
     primitive_type nearest;     ///< The primitive of `best`, if all parts share a bound.
@@ -277,7 +280,10 @@ struct least {
   /// The bounds of other blocks. They are requested some rounds before they are read, so that nothing waits for memory.
   class news {
    public:
-    explicit __device__ news(const block& s) : bounds_(PerPart ? s.head.parts : 1) { ask(s); }
+    explicit __device__ news(block& s) : bounds_(PerPart ? s.head.parts : 1) {
+      if (threadIdx.x < bounds_) cut(s);
+      ask(s);
+    }
     __device__ void hear(block& s) {
       if (threadIdx.x >= bounds_) return;
       auto& bound = s.answer.bound;
@@ -285,13 +291,16 @@ struct least {
         atomicMin(&bound[threadIdx.x], elsewhere_);
         if constexpr (PerPart) atomicMin(&bound[common], elsewhere_);
       }
-      if constexpr (PerPart)
-        if (s.head.answer.extra != nullptr)
-          atomicMin(&bound[threadIdx.x], ordered(reach_of_part(s, threadIdx.x, common_bound(s))));
+      cut(s);
       ask(s);
     }
 
    private:
+    static __device__ void cut(block& s) {
+      if constexpr (PerPart)
+        if (s.head.answer.extra != nullptr)
+          atomicMin(&s.answer.bound[threadIdx.x], ordered(reach_of_part(s, threadIdx.x, common_bound(s))));
+    }
     __device__ void ask(const block& s) {
       if (threadIdx.x < bounds_) elsewhere_ = scan::fresh(s.head.answer.state->bound[threadIdx.x]);
     }
