@@ -110,6 +110,21 @@ def test_a_mesh_is_given_as_arrays_as_an_object_or_as_a_file(tmp_path, rng):
         assert np.abs(other - found[0]).max() < near_enough
 
 
+def test_gltf_meshes_stand_as_gltf_up_says(tmp_path):
+    file, urdf = tmp_path / "post.glb", tmp_path / "post.urdf"
+    trimesh.creation.box((0.2, 1, 0.2)).export(file)  # 1 m along its y
+    urdf.write_text('<robot name="r"><link name="a"><collision><geometry><mesh filename="post.glb"/></geometry></collision>'
+                    "</link></robot>")
+    above = np.array([[0, 0, 0.8]], "f4")
+    for up, expected in (("y", 0.3), ("z", 0.7), (None, 0.3)):
+        for robot in (clearance.Robot.from_meshes({"post": file}, model="triangles", gltf_up=up),
+                      clearance.Robot.from_urdf(urdf, model="triangles", gltf_up=up)):
+            r = clearance.Query(robot, clearance.MinDistance())(above, poses=np.eye(4)[None])
+            assert abs(r.distance - expected) < near_enough
+    with pytest.raises(ValueError, match="y or z|\"y\" or \"z\""):
+        clearance.Robot.from_urdf(urdf, model="triangles", gltf_up="x")
+
+
 def test_spheres_are_inside_the_mesh_and_the_gap_is_as_it_says(rng):
     """Packed spheres: between the distance to them, less the gap, and that distance lies the one to the mesh."""
     mesh = meshes()["box"]

@@ -69,6 +69,25 @@ TEST_CASE("what an OBJ file has beside polygons and would be lost is refused by 
   }
 }
 
+TEST_CASE("a face whose hole is joined by a bridge covers all but the hole, by equal corners and by equal places") {
+  const obj_file file;
+  const std::string outer = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n", hole = "v 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n";
+  for (const std::string more : {"f 1 2 3 4 1 5 6 7 8 5\n", "v 0 0 0\nv 1 1 0\nf 1 2 3 4 9 5 6 7 8 10\n"}) {
+    INFO(more);
+    const auto mesh = file.mesh(outer + hole + more);
+    double area = 0;
+    for (const auto& t : mesh.triangles) {
+      const auto& v = mesh.vertices;
+      const double its = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]).z() / 2;
+      const Eigen::Vector3d middle = (v[t[0]] + v[t[1]] + v[t[2]]) / 3;
+      CHECK(its >= 0);
+      if (its > 0) CHECK((middle.x() < 1 || middle.x() > 3 || middle.y() < 1 || middle.y() > 3));
+      area += its;
+    }
+    CHECK(area == Approx(12));
+  }
+}
+
 TEST_CASE("edges that an OBJ file has as faces are triangles without area, beside others") {
   const obj_file file;
   const auto mesh = file.mesh(square + "f 1 2 3\nf 3 4\nf 2/1/1\nf 1 3 4\n");

@@ -100,6 +100,17 @@ TEST_CASE("fields may have any order and type, and counts above one") {
   CHECK(text.points[0] == Eigen::Vector3d(1, 2, 3));
 }
 
+TEST_CASE("a field of COUNT 0 takes no bytes: drivers of lidars write it for padding") {
+  for (const std::string data : {"binary", "ascii"}) {
+    const std::string rest = "WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA " + data + "\n";
+    const std::string head = header("x _ y z", "4 1 4 4", "F U F F", "1 0 1 1", rest);
+    const io::cloud c = read(head + (data == "ascii" ? "1 2 3\n4 5 6\n" : raw_bytes(1.f, 2.f, 3.f, 4.f, 5.f, 6.f)));
+    REQUIRE(c.points.size() == 2);
+    CHECK(c.points[1] == Eigen::Vector3d(4, 5, 6));
+    says(refused(header("x y z", "4 4 4", "F F F", "1 0 1", rest) + "1 3\n4 6\n"), "field y must have COUNT 1");
+  }
+}
+
 TEST_CASE("coordinates far from 0 keep the precision of the file") {
   const std::string head = header("x y z", "8 8 8", "F F F", "1 1 1", "WIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA ");
   const double x = 447123.0625, y = 5411987.001;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever names and words a file contains, a message is one short, printable line that names the file, and answers are
 // UTF-8.
+#include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 
@@ -256,6 +257,43 @@ TEST_CASE("where memory ends, the sentence names the file that was read") {
     refuses("query --model triangles --backend host --robot " + good.path + " --cloud " + link, "is a device");
     std::filesystem::remove(link);
   }
+}
+
+TEST_CASE(
+    "sheets that enclose nothing are noted, though together they look closed, and a closed body lies beside them") {
+  const robot_folder folder;
+  const std::string faces[] = {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"};
+  const auto cube = [](double half) {
+    std::string text;
+    for (int k = 0; k < 8; ++k)
+      for (const int bit : {1, 2, 4})
+        text += (bit == 1 ? "v " : " ") + std::to_string(k & bit ? half : -half) + (bit == 4 ? "\n" : "");
+    return text;
+  };
+  std::string small = cube(0.01);
+  for (int k = 0; k < 6; ++k) {  // a file for each panel of a housing
+    folder.put("panel" + std::to_string(k) + ".obj", cube(0.1) + "f " + faces[k] + "\n");
+    small += "f " + faces[k] + "\n";
+  }
+  folder.put("small.obj", small);
+  folder.put("c.xyz", "0 0 0.05\n");
+  const auto notes = [&](const std::vector<std::string>& meshes) {
+    std::string robot = "<robot name=\"r\"><link name=\"a\">";
+    for (const std::string& mesh : meshes)
+      robot += "<collision><geometry><mesh filename=\"" + mesh + ".obj\"/></geometry></collision>";
+    folder.put("r.urdf", robot + "</link></robot>");
+    const std::string at = folder.path.string();
+    return parsed(run_command("query --json --model triangles --robot " + at + "/r.urdf --cloud " + at + "/c.xyz"))
+        .at("notes")
+        .dump();
+  };
+  std::vector<std::string> panels;
+  for (int k = 0; k < 6; ++k) panels.push_back("panel" + std::to_string(k));
+  std::vector<std::string> both = panels;
+  both.push_back("small");
+  CHECK(notes({"small"}) == "[]");
+  CHECK(says(notes(panels), "enclose"));
+  CHECK(says(notes(both), "has surfaces that enclose nothing, so no point is inside them"));
 }
 
 }  // namespace messages_test

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `--self-filter` hides the robot's own points.
+#include "io/robot_folder.hpp"
+#include "support/random.hpp"
 #include "tools/small_png.hpp"
 #include "tools/two_boxes.hpp"
 #include "tools/written_distances.hpp"
@@ -109,6 +111,76 @@ TEST_CASE("run --self-filter says in every frame what query says, and --check is
   CHECK(lines(run_command(both + " --plan " + few.path))[0].at("plan").at("lower").at(0) ==
         lines(run_command(both))[0].at("lower"));
   refuses(both + " --merge", "--merge: cannot be mixed with --self-filter");
+}
+
+namespace {
+
+/// A link like an hourglass, in OBJ, whose surface is not joined along one of its sides: left and right of the seam the
+/// same curve has other corners. Its radius at z is 0.06 - 0.03 cos(10 pi z); z is -0.1 to 0.1.
+std::string hourglass(dice& d) {
+  const auto heights = [&](unsigned inner) {
+    std::vector<double> z{-0.1, 0.1};
+    while (inner-- > 0) z.push_back(d.uniform(-0.0999, 0.0999));
+    std::sort(z.begin(), z.end());
+    return z;
+  };
+  const std::vector<double> left = heights(60), right = heights(80);
+  constexpr unsigned columns = 24;
+  std::ostringstream text;
+  text.precision(9);
+  const auto column = [&](double angle, const std::vector<double>& z) {
+    for (const double at : z) {
+      const double r = 0.06 - 0.03 * std::cos(31.4159265 * at);
+      text << "v " << r * std::cos(angle) << ' ' << r * std::sin(angle) << ' ' << at << '\n';
+    }
+  };
+  for (unsigned k = 0; k < columns; ++k) column(6.283185307 * k / columns, left);
+  column(6.283185307, right);  // the seam's other side
+  text << "v 0 0 -0.1\nv 0 0 0.1\n";
+  const std::size_t n = left.size(), ends = columns * n + right.size() + 1;
+  for (unsigned k = 0; k < columns; ++k) {
+    const std::size_t a = k * n + 1, b = (k + 1) * n + 1;
+    const auto& beside = k + 1 < columns ? left : right;
+    for (std::size_t i = 0, j = 0; i + 1 < n || j + 1 < beside.size();)
+      if (j + 1 == beside.size() || (i + 1 < n && left[i + 1] < beside[j + 1]))
+        text << "f " << a + i << ' ' << b + j << ' ' << a + i + 1 << '\n', ++i;
+      else
+        text << "f " << a + i << ' ' << b + j << ' ' << b + j + 1 << '\n', ++j;
+    text << "f " << ends << ' ' << b << ' ' << a << "\nf " << ends + 1 << ' ' << a + n - 1 << ' '
+         << b + beside.size() - 1 << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("A cap of a crack hides no obstacle: it hangs nowhere in front of the link") {
+  dice d(5);
+  const robot_folder folder;
+  folder.put("link.urdf",
+             "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"link.obj\"/></geometry>"
+             "</collision></link></robot>");
+  for (int n = 0; n < 8; ++n) {
+    folder.put("link.obj", hourglass(d));
+    double truth = 1;
+    const double away = 0.042, height = d.uniform(-0.01, 0.01);
+    for (double z = -0.1; z < 0.1; z += 1e-5)
+      truth = std::min(truth, std::hypot(away - (0.06 - 0.03 * std::cos(31.4159265 * z)), height - z));
+    const auto cloud = folder.put("cloud.xyz", std::to_string(away) + " 0 " + std::to_string(height) + "\n");
+    for (const std::string model : {"triangles", "spheres"}) {
+      const outcome o =
+          run_command("query --json --zones 0.005,0.02 --self-filter 0.005 --check 0.02 --model " + model +
+                      " --robot " + (folder.path / "link.urdf").string() + " --cloud " + cloud.string());
+      INFO(model << ", " << n << ": " << truth << '\n' << o.out << o.err);
+      CHECK(o.code == 2);
+      const auto j = parsed(o);
+      CHECK(j.at("filter").at("own") == 0);
+      CHECK(j.at("upper").get<double>() > truth - 0.0015);
+      if (model == "spheres") continue;  // their gap is in the zones
+      CHECK(j.at("parts").at(0).at("zones").at(0).at("points") == 0);
+      CHECK(j.at("distance").get<double>() == Approx(truth).margin(0.0015));
+    }
+  }
 }
 
 }  // namespace self_filter_test
