@@ -72,7 +72,9 @@ TEST_CASE("A robot near the origin of the floats has a bracket of micrometres, w
   }
 }
 
-TEST_CASE("A source that may be off by about as much as it measures, or says no number, leaves nothing free") {
+TEST_CASE(
+    "A source that may be off by about as much as it measures leaves nothing free, and one that says no number is "
+    "refused") {
   const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
   const clearance::model robot{std::vector{clearance::make_part(clearance::build<clearance::sphere>(ball))}};
   const std::vector poses{Eigen::Isometry3d::Identity()};
@@ -85,13 +87,15 @@ TEST_CASE("A source that may be off by about as much as it measures, or says no 
     return std::tuple(near, r.state, r.lower);
   };
   const std::tuple nothing(clearance::state::possible, clearance::state::possible, real(0));
-  const double no = clearance::not_a_number;
-  const std::vector<clearance::position_error> offs{{0, 0.25},      {0, 0.4999}, {0, 0.49999999}, {0, 0.5},
-                                                    {0, 0.5000003}, {0, 3},      {0, no},         {no, 0},
-                                                    {no, 0.01},     {-1, 0},     {0, -1}};
-  for (const clearance::position_error& off : offs) {
+  for (const double relative : {0.25, 0.4999, 0.49999999, 0.5, 0.5000003, 3.0}) {
+    INFO(relative);
+    CHECK(asked({0, relative}) == nothing);
+  }
+  const double no = clearance::not_a_number, endless = clearance::infinity;
+  for (const clearance::position_error& off : std::vector<clearance::position_error>{
+           {0, no}, {no, 0}, {no, 0.01}, {-1, 0}, {0, -1}, {endless, 0}, {0, endless}}) {
     INFO(off.absolute << " and " << off.relative);
-    CHECK(asked(off) == nothing);
+    CHECK_THROWS_AS(asked(off), std::invalid_argument);
   }
   CHECK(std::get<0>(asked({})) == clearance::state::free);
   CHECK(std::get<1>(asked({0, 0.2})) == clearance::state::free);

@@ -61,7 +61,7 @@ void moves(const Model& model, dice& d, verdict& v, int n) {
     auto points = d.points(frame % 7 == 6 ? 0 : 5000, 1);
     for (vec3& p : points)
       p = clearance::scaled(d.number(1, 1.4) / std::max(0.1f, clearance::length(p)), p), p.x += 2.0f * float(near);
-    const clearance::point_span cloud(points), half(std::span(points).first(points.size() / 2));
+    const clearance::point_span cloud(points), half(std::span<const vec3>(points).first(points.size() / 2));
     const auto expected = ask(clearance::host{}, model, poses, cloud, clearance::min_distance{});
     v.require(same_result(query(poses, cloud), expected), "robot", n, "frame", frame);
     const std::tuple two(half, clearance::placed{cloud, d.pose(0.1)});
