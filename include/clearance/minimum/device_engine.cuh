@@ -43,12 +43,8 @@ class device_search {
         records_(launch_.most_blocks() * model.size(), on.id, memory),
         candidates_(launch_.groups() * launch_.most_blocks(), on.id, memory),
         of_group_(launch_.groups() == 1 ? 0 : launch_.groups(), on.id, memory),
-        minima_(frames::parts_decide(model.facts) ? model.size() : 0, on.id, memory),
-        extra_(minima_.size(), on.id, memory) {
+        minima_(frames::parts_decide(model.facts) ? model.size() : 0, on.id, memory) {
     const device_guard guard(on.id);
-    std::vector<real> extra;
-    frames::extra_reaches(facts_, extra);
-    on.stage(std::span<const real>(extra), extra_.data());
     check_cuda(cudaMemsetAsync(witnesses_.data(), 0, witnesses_.size() * sizeof(typename one::witness_type), on.stream),
                "cudaMemsetAsync");
     forget_bounds();
@@ -123,13 +119,12 @@ class device_search {
     const bool alone = launch_.groups() == 1;
     const std::uint32_t before = group * scan::most_parts;
     const auto around = scan::elements_of(source);
-    const real* const extra = minima_.size() != 0 && end.minima == minima_.data() ? extra_.data() + before : nullptr;
     auto a = launch_.template begin<least<PartView, PerPart, std::remove_const_t<decltype(around)>>>(
         group, now,
         {state_.data() + group, witnesses_.data() + before,
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
-         PerPart ? end.minima + before : nullptr, extra, launch_.fields(group), around});
+         PerPart ? end.minima + before : nullptr, launch_.fields(group), around});
     if (alone) a.done = end.done, a.number = end.number;
     place(a);
     launch_(source, a);
@@ -148,8 +143,7 @@ class device_search {
   device_buffer<typename one::record> records_;
   device_buffer<typename one::witness_type> candidates_;
   device_buffer<min_distance_result> of_group_;
-  device_buffer<part_minimum> minima_;  ///< If parts decide what is certain, each is searched for its own,
-  device_buffer<real> extra_;           ///< not farther than this beyond the nearest of all (`extra_reaches`).
+  device_buffer<part_minimum> minima_;  ///< If parts decide what is certain, each is searched for its own.
   frames::cloud_frame frame_;
 };
 

@@ -103,8 +103,7 @@ struct one_minimum {
   }
 };
 
-// The end of a frame if every part has a bound and a minimum. With `extra` a part's minimum may be missing or too far,
-// if it decides nothing.
+// The end of a frame if every part has a bound and a minimum.
 
 template <class Tally>
 struct part_minima {
@@ -190,7 +189,6 @@ struct least {
   using seeds = last_frame<least>;
   static constexpr bool bound_per_part = PerPart, goes_ahead = false;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;
-  static constexpr std::uint32_t common = PerPart ? slots : 0;  ///< Where the least bound of all parts is.
   /// 73 nodes (three levels) of each of eight sphere trees. It leaves room for two blocks on a processor of an H200.
   static constexpr std::size_t top_bytes = PerPart ? 10000 : 14016;
 
@@ -201,15 +199,12 @@ struct least {
     witness_type* candidates;  ///< else room for one per block.
     min_distance_result* result;
     part_minimum* minima;      ///< One per part, or null.
-    const real* extra;         ///< One per part, or null: see reach_of_part.
     const field_view* fields;  ///< One per part, or null: for a first bound.
     Around around;
   };
 
   struct memory {
-    /// ordered(): how far each part is looked for. It is the least distance that this block knows, and at times that of
-    /// all blocks, or with `extra` a reach beyond the least of all, which no other block hears of.
-    std::uint32_t bound[common + 1];
+    std::uint32_t bound[slots];  ///< ordered(): the least that this block knows, and at times the least of all blocks.
     std::uint32_t seed_of_warp[scan::warps];
     record best[slots];
     primitive_type nearest;     ///< The primitive of `best`, if all parts share a bound.
@@ -229,25 +224,16 @@ struct least {
   static __device__ real reach(const block& s, std::uint32_t part) {
     return from_ordered(scan::fresh(s.answer.bound[slot(part)]));
   }
-  /// `bound` is `common_bound`. If only what decides the bracket is asked for, a part is not looked for farther than
-  /// that and its extra (`extra_reaches`).
   static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t bound) {
-    if constexpr (PerPart) {
-      const real* const extra = s.head.answer.extra;
-      const real most = extra == nullptr ? infinity : frames::farther(from_ordered(bound), extra[part]);
-      return min(reach(s, part), most);
-    }
-    return from_ordered(bound);
+    return PerPart ? reach(s, part) : from_ordered(bound);
   }
   static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t) { return reach(s, part); }
-  /// The bound of all parts, or the least of theirs.
-  static __device__ std::uint32_t common_bound(const block& s) { return scan::fresh(s.answer.bound[common]); }
+  /// The bound of all parts, if they share one.
+  static __device__ std::uint32_t common_bound(const block& s) { return scan::fresh(s.answer.bound[0]); }
 
   static __device__ void lower(block& s, std::uint32_t part, real distance) {
     const std::uint32_t u = ordered(distance);
-    if (u >= atomicMin(&s.answer.bound[slot(part)], u)) return;
-    atomicMin(&s.head.answer.state->bound[slot(part)], u);
-    if constexpr (PerPart) atomicMin(&s.answer.bound[common], u);
+    if (u < atomicMin(&s.answer.bound[slot(part)], u)) atomicMin(&s.head.answer.state->bound[slot(part)], u);
   }
 
   /// True if nothing is left to learn. It stays false for the point of the minimum itself: another part may have been
@@ -280,27 +266,14 @@ struct least {
   /// The bounds of other blocks. They are requested some rounds before they are read, so that nothing waits for memory.
   class news {
    public:
-    explicit __device__ news(block& s) : bounds_(PerPart ? s.head.parts : 1) {
-      if (threadIdx.x < bounds_) cut(s);
-      ask(s);
-    }
+    explicit __device__ news(const block& s) : bounds_(PerPart ? s.head.parts : 1) { ask(s); }
     __device__ void hear(block& s) {
       if (threadIdx.x >= bounds_) return;
-      auto& bound = s.answer.bound;
-      if (elsewhere_ < scan::fresh(bound[threadIdx.x])) {
-        atomicMin(&bound[threadIdx.x], elsewhere_);
-        if constexpr (PerPart) atomicMin(&bound[common], elsewhere_);
-      }
-      cut(s);
+      if (elsewhere_ < scan::fresh(s.answer.bound[threadIdx.x])) atomicMin(&s.answer.bound[threadIdx.x], elsewhere_);
       ask(s);
     }
 
    private:
-    static __device__ void cut(block& s) {
-      if constexpr (PerPart)
-        if (s.head.answer.extra != nullptr)
-          atomicMin(&s.answer.bound[threadIdx.x], ordered(reach_of_part(s, threadIdx.x, common_bound(s))));
-    }
     __device__ void ask(const block& s) {
       if (threadIdx.x < bounds_) elsewhere_ = scan::fresh(s.head.answer.state->bound[threadIdx.x]);
     }

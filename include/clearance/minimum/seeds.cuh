@@ -91,24 +91,20 @@ class last_frame {
     }
   }
 
-  /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own, that is the
-  /// least, or `no_bound` if one part has none and is looked for however far it is.
+  /// Returns the bound of all parts to all threads, after `seed` and a barrier. If each part has its own bound:
+  /// `no_bound` if one part has none, else 0.
   static __device__ std::uint32_t found(std::uint32_t parts) {
-    auto& block = memory_of_block<Tally>();
-    auto& s = block.answer;
+    auto& s = memory_of_block<Tally>().answer;
     const std::uint32_t lane = threadIdx.x & 31;
-    std::uint32_t bound = no_bound;
-    bool all = true;
     if constexpr (per_part) {
-      for (std::uint32_t k = lane; k < parts; k += 32)
-        bound = lower_of(bound, s.bound[k]), all &= s.bound[k] != no_bound;
-      all = __all_sync(all_lanes, all) || block.head.answer.extra != nullptr;
-    } else if (lane < warps) {
-      bound = s.seed_of_warp[lane];
+      bool all = true;
+      for (std::uint32_t k = lane; k < parts; k += 32) all &= s.bound[k] != no_bound;
+      return __all_sync(all_lanes, all) ? 0 : no_bound;
+    } else {
+      const std::uint32_t bound = least_of(all_lanes, lane < warps ? s.seed_of_warp[lane] : no_bound);
+      if (threadIdx.x == 0) s.bound[0] = bound;
+      return bound;
     }
-    bound = least_of(all_lanes, bound);
-    if (threadIdx.x == 0) s.bound[Tally::common] = bound;
-    return all ? bound : no_bound;
   }
 
  private:
@@ -131,6 +127,7 @@ class last_frame {
 template <class Tally>
 __noinline__ __device__ void seed_cold(scan::quad_points p) {
   using parts = scan::frame_parts<Tally>;
+  if (parts::here().head.parts == 0) return;
   constexpr int quad = scan::quad;
   constexpr bool per_part = Tally::bound_per_part;
   const scan::eight_lanes team;
@@ -185,11 +182,8 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
     }
   }
   __syncthreads();
-  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads) {
-    const std::uint32_t known = lower_of(s.bound[k], fresh(a.answer.state->bound[k]));
-    s.bound[k] = known;
-    if constexpr (per_part) atomicMin(&s.bound[Tally::common], known);
-  }
+  for (std::uint32_t k = threadIdx.x; k < bounds; k += block_threads)
+    atomicMin(&s.bound[k], fresh(a.answer.state->bound[k]));
 }
 
 }  // namespace clearance::minimum

@@ -13,8 +13,8 @@ __device__ real limit_for(const ball& around, real reach) {
   return std::is_same_v<typename element_of_tally<Tally>::type, vec3> ? limit : max(limit, 0);
 }
 
-/// Sets the root tests to the present bounds, one thread per test. `bound` is the tally's `common_bound`. No thread may
-/// be reading the tests.
+/// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No
+/// thread may be reading the tests.
 template <class Tally>
 __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   using parts = frame_parts<Tally>;

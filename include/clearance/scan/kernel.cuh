@@ -96,7 +96,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   std::uint32_t bound = Tally::seeds::found(a.parts);
   pairs::fetch_tops(a.parts);
   const bool cold = bound == no_bound;
-  if (cold && rounds > 0 && clusters > 0) {
+  if (cold && rounds > 0) {
     __pipeline_wait_prior(0);
     __syncthreads();  // the tops have arrived
     quad_points p = ahead > 0 ? reader.peek() : look_closely(source, a.points, all.index(0));
