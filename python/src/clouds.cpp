@@ -172,6 +172,14 @@ cloud_object points_of(nb::handle points, nb::handle pose, double nearest, doubl
   if (axes > 2 || seen.kind != 'f' || (seen.item != 4 && seen.item != 8))
     throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
                                 shape_and_type(points));
+  // Of an array that was broadcast one record stands for many; sources have records that lie apart.
+  for (std::size_t k = 0; k < axes; ++k)
+    if (seen.strides[k] == 0 && seen.shape[k] > 1) {
+      const nb::object copy = nb::hasattr(points, "contiguous")
+                                  ? points.attr("contiguous")()
+                                  : points.attr(nb::hasattr(points, "copy") ? "copy" : "__copy__")();
+      return points_of(copy, pose, nearest, farthest, sensor, zero_is_missing);
+    }
   if (!(nearest >= 0) || !(farthest >= nearest))
     throw std::invalid_argument("clearance: nearest is 0 or more, and farthest not less; here are " +
                                 std::to_string(nearest) + " and " + std::to_string(farthest));
