@@ -12,6 +12,8 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
+
 using namespace clearance;
 
 namespace {
@@ -173,7 +175,8 @@ cloud_object points_of(nb::handle points, nb::handle pose, double nearest, doubl
     throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
                                 shape_and_type(points));
   // Of an array that was broadcast one record stands for many; sources have records that lie apart.
-  for (std::size_t k = 0; k < axes; ++k)
+  const bool any = std::find(seen.shape.begin(), seen.shape.end(), std::size_t(0)) == seen.shape.end();
+  for (std::size_t k = 0; any && k < axes; ++k)
     if (seen.strides[k] == 0 && seen.shape[k] > 1) {
       const nb::object copy = nb::hasattr(points, "contiguous")
                                   ? points.attr("contiguous")()
