@@ -221,204 +221,6 @@ class PairDistance:
 
     def __repr__(self) -> str: ...
 
-class UnseenPart:
-    """
-    A part, and where the room that no camera sees is nearest to it: cloud is the camera, point the pixel, at lies on the pixel's way. Metres.
-    """
-
-    @property
-    def distance(self) -> float: ...
-
-    @property
-    def part(self) -> int | None: ...
-
-    @property
-    def cloud(self) -> int | None: ...
-
-    @property
-    def point(self) -> int | None: ...
-
-    @property
-    def primitive(self) -> int | None: ...
-
-    @property
-    def at(self) -> tuple[float, float, float]: ...
-
-    @property
-    def nearest(self) -> tuple[float, float, float]: ...
-
-    @property
-    def normal(self) -> tuple[float, float, float]: ...
-
-    @property
-    def lower(self) -> float:
-        """At least so far away is all that no camera sees and some camera hides."""
-
-    @property
-    def out_of_view(self) -> float:
-        """
-        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
-        """
-
-    @property
-    def to_edge(self) -> float:
-        """
-        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
-        """
-
-    @property
-    def link(self) -> str | None:
-        """The name of that part, or None."""
-
-    def __repr__(self) -> str: ...
-
-class UnseenResult:
-    """
-    all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
-    """
-
-    @property
-    def all(self) -> MinDistanceResult: ...
-
-    @property
-    def parts(self) -> NDArray[numpy.void]: ...
-
-    @property
-    def own_shadow(self) -> MinDistanceResult:
-        """
-        What pixels of the robot's own points (masked) hide, of all cameras together.
-        """
-
-    def __repr__(self) -> str: ...
-
-class UncertaintyShares:
-    """
-    What lies between the distance of a pair and what is certain of it, one by one. Metres.
-    """
-
-    @property
-    def noise(self) -> float:
-        """Of the point."""
-
-    @property
-    def calibration(self) -> float: ...
-
-    @property
-    def time(self) -> float: ...
-
-    @property
-    def joints(self) -> float:
-        """Of the part."""
-
-    @property
-    def delay(self) -> float: ...
-
-    @property
-    def gap(self) -> float:
-        """The part's gap and tolerance."""
-
-    @property
-    def rounding(self) -> float: ...
-
-    def sum(self) -> float: ...
-
-    def __repr__(self) -> str: ...
-
-class CertainPair:
-    """
-    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
-    """
-
-    @property
-    def distance(self) -> float: ...
-
-    @property
-    def part(self) -> int | None: ...
-
-    @property
-    def cloud(self) -> int | None: ...
-
-    @property
-    def point(self) -> int | None: ...
-
-    @property
-    def primitive(self) -> int | None: ...
-
-    @property
-    def at(self) -> tuple[float, float, float]: ...
-
-    @property
-    def nearest(self) -> tuple[float, float, float]: ...
-
-    @property
-    def normal(self) -> tuple[float, float, float]: ...
-
-    @property
-    def lower(self) -> float: ...
-
-    @property
-    def shares(self) -> UncertaintyShares: ...
-
-    @property
-    def to_ball(self) -> float:
-        """Metres from the part to the ball around the point, the nearest ball."""
-
-    @property
-    def link(self) -> str | None:
-        """The name of that part, or None."""
-
-    def __repr__(self) -> str: ...
-
-class CertainDistanceResult:
-    """
-    lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
-    """
-
-    @property
-    def state(self) -> State: ...
-
-    @property
-    def lower(self) -> float: ...
-
-    @property
-    def upper(self) -> float: ...
-
-    @property
-    def nominal(self) -> MinDistanceResult: ...
-
-    @property
-    def certain(self) -> CertainPair: ...
-
-    @property
-    def parts(self) -> NDArray[numpy.void]: ...
-
-    @property
-    def anywhere(self) -> int:
-        """So many points may be anywhere: if it is not 0, nothing is free."""
-
-    @property
-    def any_radius(self) -> bool:
-        """Some cloud was uncertain, or parts had radii."""
-
-    def __repr__(self) -> str: ...
-
-class SelfFilterCounts:
-    """
-    How many points of some clouds are the robot's. Plain data that a kernel may write or read.
-    """
-
-    @property
-    def points(self) -> PointCounts: ...
-
-    @property
-    def own(self) -> int:
-        """Of the valid points."""
-
-    @property
-    def uncertain(self) -> int: ...
-
-    def __repr__(self) -> str: ...
-
 class DropReason(enum.IntEnum):
     """
     Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
@@ -601,6 +403,117 @@ class LidarNoise:
     def __eq__(self, other: object, /) -> bool: ...
 
     def __hash__(self) -> int: ...
+
+class UncertaintyShares:
+    """
+    What lies between the distance of a pair and what is certain of it, one by one. Metres.
+    """
+
+    @property
+    def noise(self) -> float:
+        """Of the point."""
+
+    @property
+    def calibration(self) -> float: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def joints(self) -> float:
+        """Of the part."""
+
+    @property
+    def delay(self) -> float: ...
+
+    @property
+    def gap(self) -> float:
+        """The part's gap and tolerance."""
+
+    @property
+    def rounding(self) -> float: ...
+
+    def sum(self) -> float: ...
+
+    def __repr__(self) -> str: ...
+
+class CertainPair:
+    """
+    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def shares(self) -> UncertaintyShares: ...
+
+    @property
+    def to_ball(self) -> float:
+        """Metres from the part to the ball around the point, the nearest ball."""
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class CertainDistanceResult:
+    """
+    lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
+    """
+
+    @property
+    def state(self) -> State: ...
+
+    @property
+    def lower(self) -> float: ...
+
+    @property
+    def upper(self) -> float: ...
+
+    @property
+    def nominal(self) -> MinDistanceResult: ...
+
+    @property
+    def certain(self) -> CertainPair: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def anywhere(self) -> int:
+        """So many points may be anywhere: if it is not 0, nothing is free."""
+
+    @property
+    def any_radius(self) -> bool:
+        """Some cloud was uncertain, or parts had radii."""
+
+    def __repr__(self) -> str: ...
 
 class PartRadius:
     """By how much a part may be elsewhere. Metres."""
@@ -1152,6 +1065,23 @@ class PartWitnesses:
 
     def __hash__(self) -> int: ...
 
+class SelfFilterCounts:
+    """
+    How many points of some clouds are the robot's. Plain data that a kernel may write or read.
+    """
+
+    @property
+    def points(self) -> PointCounts: ...
+
+    @property
+    def own(self) -> int:
+        """Of the valid points."""
+
+    @property
+    def uncertain(self) -> int: ...
+
+    def __repr__(self) -> str: ...
+
 class SelfFilterResult:
     """
     Whose each point is. A point is the robot's if it is certainly within the padding of a part's solid. If gap, tolerance or rounding leave that open, it is uncertain and not hidden: a point hidden wrongly may be an obstacle, a point kept wrongly stops a robot. Without a certificate every other point is uncertain.
@@ -1224,6 +1154,76 @@ class SignedDistances:
     def __eq__(self, other: object, /) -> bool: ...
 
     def __hash__(self) -> int: ...
+
+class UnseenPart:
+    """
+    A part, and where the room that no camera sees is nearest to it: cloud is the camera, point the pixel, at lies on the pixel's way. Metres.
+    """
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def part(self) -> int | None: ...
+
+    @property
+    def cloud(self) -> int | None: ...
+
+    @property
+    def point(self) -> int | None: ...
+
+    @property
+    def primitive(self) -> int | None: ...
+
+    @property
+    def at(self) -> tuple[float, float, float]: ...
+
+    @property
+    def nearest(self) -> tuple[float, float, float]: ...
+
+    @property
+    def normal(self) -> tuple[float, float, float]: ...
+
+    @property
+    def lower(self) -> float:
+        """At least so far away is all that no camera sees and some camera hides."""
+
+    @property
+    def out_of_view(self) -> float:
+        """
+        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
+        """
+
+    @property
+    def to_edge(self) -> float:
+        """
+        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+        """
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __repr__(self) -> str: ...
+
+class UnseenResult:
+    """
+    all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
+    """
+
+    @property
+    def all(self) -> MinDistanceResult: ...
+
+    @property
+    def parts(self) -> NDArray[numpy.void]: ...
+
+    @property
+    def own_shadow(self) -> MinDistanceResult:
+        """
+        What pixels of the robot's own points (masked) hide, of all cameras together.
+        """
+
+    def __repr__(self) -> str: ...
 
 class Unseen:
     """
