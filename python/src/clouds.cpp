@@ -175,12 +175,12 @@ cloud_object points_of(nb::handle points, nb::handle pose, double nearest, doubl
     throw std::invalid_argument(std::string("clearance: points is ") + points_wanted + ", not " +
                                 shape_and_type(points));
   // Of an array that was broadcast one record stands for many; sources have records that lie apart.
-  const bool any = std::find(seen.shape.begin(), seen.shape.end(), std::size_t(0)) == seen.shape.end();
-  for (std::size_t k = 0; any && k < axes; ++k)
+  const bool any_points = std::find(seen.shape.begin(), seen.shape.end(), std::size_t(0)) == seen.shape.end();
+  for (std::size_t k = 0; any_points && k < axes; ++k)
     if (seen.strides[k] == 0 && seen.shape[k] > 1) {
-      const nb::object copy = nb::hasattr(points, "contiguous")
-                                  ? points.attr("contiguous")()
-                                  : points.attr(nb::hasattr(points, "copy") ? "copy" : "__copy__")();
+      const nb::object copy = seen.device == on_the_host
+                                  ? nb::object(nb::module_::import_("numpy").attr("ascontiguousarray")(points))
+                                  : points.attr(nb::hasattr(points, "contiguous") ? "contiguous" : "copy")();
       return points_of(copy, pose, nearest, farthest, sensor, zero_is_missing);
     }
   if (!(nearest >= 0) || !(farthest >= nearest))

@@ -363,6 +363,23 @@ def test_of_far_doubles_each_of_many_configurations_has_the_answer_that_it_has_a
 # ---- nothing to see, and what is refused early
 
 
+class Interface:
+    """An array that has nothing but NumPy's interface."""
+
+    def __init__(self, array):
+        self.__array_interface__ = array.__array_interface__
+        self.array = array
+
+
+def test_an_array_that_was_broadcast_is_that_many_points():
+    query = clearance.Query(clearance.Robot.from_spheres({"a": np.array([[0, 0, 0, 0.1]], "f4")}), clearance.MinDistance())
+    row = np.broadcast_to(np.array([[[1, 0, 0], [2, 0, 0]]], "f4"), (4, 2, 3))
+    records = np.broadcast_to(np.array([(1, 0, 0)], [("x", "f4"), ("y", "f4"), ("z", "f4")]), (8,))
+    for points in (row, row.astype("f8")[:1].repeat(4, 0), records, Interface(row), np.broadcast_to(row[0, 0], (8, 3))):
+        r = query(points, poses=np.eye(4)[None])
+        assert r.seen == 8 and abs(r.distance - 0.9) < 1e-6
+
+
 def test_images_without_pixels_are_no_data_as_clouds_without_points_are():
     ball = clearance.Robot.from_spheres({"ball": np.array([[0, 0, 0, 0.1]])})
     ask = clearance.Query(ball, clearance.MinDistance())
