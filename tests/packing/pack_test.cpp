@@ -44,6 +44,8 @@ TEST_CASE("a packing depends on its seed, and not on the number of threads") {
   CHECK(one.fill == Approx(other.fill).epsilon(0.03));
 }
 
+TEST_CASE("no sphere has its middle beyond a passage that is a wall") { stays_within_a_flood(alone); }
+
 TEST_CASE("packing stops for each of its reasons") { stops_for_each_reason(alone); }
 
 TEST_CASE("spheres that may overlap leave a smaller gap") { lets_spheres_overlap(alone); }

@@ -23,6 +23,7 @@ TEST_CASE("a GPU's packing keeps the laws") { keeps_the_laws(on_gpu); }
 TEST_CASE("a GPU packs as well as the host") { is_as_good_as_the_host(on_gpu); }
 TEST_CASE("a GPU's packing is the same bits on every run") { repeats_itself(on_gpu); }
 TEST_CASE("a GPU stops packing for each reason") { stops_for_each_reason(on_gpu); }
+TEST_CASE("a GPU's spheres have no middle beyond a passage that is a wall") { stays_within_a_flood(on_gpu); }
 TEST_CASE("a GPU lets spheres overlap if asked to") { lets_spheres_overlap(on_gpu); }
 TEST_CASE("a GPU refuses to pack what makes no sense") { refuses_what_makes_no_sense(on_gpu); }
 TEST_CASE("a GPU ends on thin plates and needles, with spheres or with a reason") { ends_on_thin_bodies(on_gpu); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "packing/laws.hpp"
+#include "support/random.hpp"
 
 #include <clearance/packing/pack.hpp>
 
@@ -121,6 +122,28 @@ void refuses_what_makes_no_sense(Pack pack) {
   auto bad = cube;
   bad.vertices[3].y() = std::nan("");
   CHECK_THROWS_AS(pack(bad, {}), std::invalid_argument);
+}
+
+/// In a soup of triangles passages are walls, where no surface is: no sphere has its middle beyond one.
+template <class Pack>
+void stays_within_a_flood(Pack pack) {
+  for (unsigned k = 1; k <= 3; ++k) {
+    testing::dice d(k);
+    triangle_mesh mesh;
+    for (std::uint32_t i = 0; i < 900; i += 3) {
+      const Vector3d at(d.number(0, 1), d.number(0, 1), d.number(0, 1));
+      for (int c = 0; c < 3; ++c)
+        mesh.vertices.push_back(at + Vector3d(d.number(-0.2f, 0.2f), d.number(-0.2f, 0.2f), d.number(-0.2f, 0.2f)));
+      mesh.triangles.push_back({i, i + 1, i + 2});
+    }
+    const mesh_solid soup(mesh);
+    REQUIRE(soup.mesh().inside == inside_by::flood);
+    const packing p = pack(mesh, {.count = 300});
+    CHECK(p.spheres.size() > 200);
+    int outside = 0;
+    for (const inner_sphere& s : p.spheres) outside += !soup.inside(Vector3d(s.center.x, s.center.y, s.center.z));
+    CHECK(outside == 0);
+  }
 }
 
 /// Plates, needles and wedges that are thinner and thinner: spheres that keep the laws, or none and a reason; and an

@@ -252,6 +252,51 @@ TEST_CASE("A cap that would hang in free space is none: the body stays open, and
   CHECK(solid.distance({2, 0.5, 2}) > 1.3);
 }
 
+TEST_CASE("Two halves that meet in a bent seam leave nothing free between their caps") {
+  testing::verdict v;
+  std::size_t apart = 0;
+  for (unsigned k = 0; k < 40; ++k) {
+    dice d(k + 1);
+    const Vector3d corner[4] = {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}};
+    double bend[4];
+    for (int i = 0; i < 4; ++i) bend[i] = (i % 2 ? 1 : -1) * d.number(0, 0.3f);
+    triangle_mesh mesh;
+    // From the seam, which each half divides in its own way, to the end at this height.
+    const auto half = [&](double end, double off, bool turned) {
+      const auto first = std::uint32_t(mesh.vertices.size());
+      for (int i = 0; i < 4; ++i) {
+        const Vector3d a = corner[i] + Vector3d(0, 0, bend[i]),
+                       b = corner[(i + 1) % 4] + Vector3d(0, 0, bend[(i + 1) % 4]);
+        const int cuts = 1 + int(d.below(4));
+        for (int c = 0; c < cuts; ++c) {
+          const Vector3d p = a + (c + (c > 0 ? d.number(-0.4f, 0.4f) : 0)) / cuts * (b - a);
+          mesh.vertices.push_back(p + Vector3d(0, 0, off)), mesh.vertices.emplace_back(p.x(), p.y(), end);
+        }
+      }
+      const auto middle = std::uint32_t(mesh.vertices.size());
+      mesh.vertices.emplace_back(0.5, 0.5, end);
+      for (std::uint32_t i = first; i < middle; i += 2) {
+        const std::uint32_t on = i + 2 < middle ? i + 2 : first;
+        for (std::array<std::uint32_t, 3> t : {std::array{i, on, on + 1}, {i, on + 1, i + 1}, {i + 1, on + 1, middle}})
+          turned ? std::swap(t[1], t[2]) : void(), mesh.triangles.push_back(t);
+      }
+    };
+    const double off = k % 3 == 0 ? 0 : 1e-4 * d.number(0, 1);
+    half(0, 0, k % 2 == 0), half(1, off, k % 4 < 2);
+    const closed_mesh m = close_mesh(mesh);
+    apart += m.inside == inside_by::flood;
+    const auto w = make_winding<double>(m);
+    for (int i = 0; i < 200; ++i) {
+      const double deep = m.tolerance + 2 * off + 1e-6;
+      const Vector3d p(d.number(0, 1), d.number(0, 1), d.number(0, 1));
+      if ((p.array() < deep).any() || (p.array() > 1 - deep).any()) continue;
+      v.require(w.view().inside(p.x(), p.y(), p.z()), "run", k, to_string(m.inside), ": free at", p.x(), p.y(), p.z());
+    }
+    v.require(!w.view().inside(1.1, 0.5, 0.5), "run", k, ": not free outside");
+  }
+  v.require(apart > 10, "too few caps part:", apart);
+}
+
 TEST_CASE("A room whose seams are narrower than the tolerance is inside, however its panels meet") {
   testing::verdict v;
   std::size_t decided = 0;

@@ -12,7 +12,7 @@
 namespace clearance::io {
 
 /// Raise this whenever `pack` makes other spheres from the same solid and options.
-inline constexpr std::uint32_t packing_recipe = 3;
+inline constexpr std::uint32_t packing_recipe = 4;
 
 /// Covers everything that decides a packing: mesh, options, algorithm. `maker` names the algorithm.
 inline digest packing_key(const closed_mesh& mesh, const pack_options& options, std::string_view maker = "host") {

@@ -14,6 +14,17 @@ CLEARANCE_HD inline vec3d eighth_middle(const vec3d& middle, double half, std::u
   return middle + vec3d(k & 1 ? h : -h, k & 2 ? h : -h, k & 4 ? h : -h);
 }
 
+/// May the inside end where no surface is, as at a passage that a flood takes for a wall?
+template <solid_view V>
+CLEARANCE_HD bool is_porous(const V& in) {
+  if constexpr (requires {
+                  { in.porous() } -> std::same_as<bool>;
+                })
+    return in.porous();
+  else
+    return false;
+}
+
 /// The signed distance, positive inside. It differs by at most `step` from `known`, that of another place, which is 0
 /// if unknown. No surface is within |known| of that place.
 CLEARANCE_CALLS_ANYTHING
@@ -21,7 +32,7 @@ template <solid_view V>
 CLEARANCE_HD double signed_depth(const V& in, const vec3d& p, double known, double step) {
   const double free = known < 0 ? -known : known;
   const double within = free > 0 ? (free + step) * (1 + 1e-12) : double(infinity);
-  const bool inside = free > step * (1 + 1e-9) ? known > 0 : in.inside(p);
+  const bool inside = free > step * (1 + 1e-9) && !is_porous(in) ? known > 0 : in.inside(p);
   const double d = in.distance(p, within, 0);
   return inside ? d : -d;
 }

@@ -238,9 +238,10 @@ struct climb_cells {
     const cell& c = cells[some[these[i]]];
     // It is taken before its turn: stay near, although there is more room elsewhere.
     const double key = keys[some[these[i]]], farthest = key > c.bound() ? c.room() / 2 : double(infinity);
-    solid_sphere found =
-        climb(f.in, memory + i * local_list<V, Lanes>::capacity, {c.middle, c.room()}, farthest, lanes);
-    const solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
+    const solid_sphere start{c.middle, c.room()};
+    solid_sphere found = climb(f.in, memory + i * local_list<V, Lanes>::capacity, start, farthest, lanes);
+    solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
+    if (is_porous(f.in.solid) && !f.in.solid.inside(grown.center)) found = start, grown = fit(f, start, overlap);
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;
     if (!overlap) found = grown;

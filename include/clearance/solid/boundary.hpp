@@ -17,6 +17,7 @@ namespace clearance {
 
 /// Triangles over one hole. After inner sides cancel, their sides are the rim's.
 struct cap {
+  std::uint32_t body;
   std::vector<std::uint32_t> rim;
   polygon_triangles triangles;
   double off = 0;  ///< How far from the rim it lies where nothing is missing, metres.
@@ -101,17 +102,20 @@ class nested_rims {
   std::size_t& patience_;
 };
 
-/// How far do caps lie from where the surface is missing? There the winding number of the open body is no integer. The
-/// body with all its caps is closed, so that of its caps alone is none there, either. Only bent caps are asked about,
-/// where they are largest. One that `patience` does not reach counts as far off.
+/// How far do caps lie from where the surface is missing? There the winding number of the bodies as loaded is no
+/// integer. With all their caps they are closed, so that of the caps alone is none there, either. A cap's own body is
+/// asked, with those whose holes are beside it: two that meet in a seam have no surface missing but in the seam. Only
+/// bent caps are asked about, where they are largest. One that `patience` does not reach counts as far off.
 class stray_caps {
  public:
-  stray_caps(std::span<const Eigen::Vector3d> vertices, std::vector<cap>& caps, std::size_t& patience)
-      : vertices_(vertices), caps_(caps), patience_(patience) {
+  /// `turned`: by body, whether it faces inwards.
+  stray_caps(std::span<const Eigen::Vector3d> vertices, std::vector<cap>& caps, const std::vector<bool>& turned,
+             std::size_t& patience)
+      : vertices_(vertices), caps_(caps), turned_(turned), beside_(turned.size()), patience_(patience) {
     for (const cap& c : caps) {
       dipole& d = far_.emplace_back();
       d.area = vector_area(vertices, c.rim);
-      for (const std::uint32_t v : c.rim) d.middle += at(v) / double(c.rim.size());
+      for (const std::uint32_t v : c.rim) d.middle += at(v) / double(c.rim.size()), d.box.extend(at(v));
       for (const std::uint32_t v : c.rim) d.radius = std::max(d.radius, (at(v) - d.middle).norm());
       size_ = std::max(size_, d.radius);
     }
@@ -120,6 +124,7 @@ class stray_caps {
   void measure() {
     for (std::size_t k = 0; k < caps_.size(); ++k) {
       if (area_of(vertices_, caps_[k].triangles) <= nearly_flat * far_[k].area.norm()) continue;
+      find_beside(k);
       polygon_triangles largest = caps_[k].triangles;
       const auto size = [&](const auto& t) { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).squaredNorm(); };
       constexpr std::size_t most = 256;
@@ -134,16 +139,27 @@ class stray_caps {
   struct dipole {
     Eigen::Vector3d area = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
     double radius = 0;
+    Eigen::AlignedBox3d box;
   };
   const Eigen::Vector3d& at(std::uint32_t v) const { return vertices_[v]; }
 
+  /// All caps of the bodies that have a hole beside this one.
+  void find_beside(std::size_t k) {
+    spend(caps_.size() / 4);
+    std::fill(beside_.begin(), beside_.end(), false);
+    for (std::size_t i = 0; i < caps_.size(); ++i)
+      if (far_[i].box.intersects(far_[k].box)) beside_[caps_[i].body] = true;
+    asked_.clear();
+    for (std::size_t i = 0; i < caps_.size(); ++i)
+      if (beside_[caps_[i].body]) asked_.push_back(i);
+  }
   void measure(cap& its, const std::array<std::uint32_t, 3>& t) {
     const Eigen::Vector3d &a = at(t[0]), &b = at(t[1]), &c = at(t[2]), normal = (b - a).cross(c - a);
     if (!(normal.norm() > 0)) return;
     const Eigen::Vector3d side = 1e-6 * size_ * normal.normalized();
     for (const auto& [u, v] : {std::pair{1 / 3.0, 1 / 3.0}, {0.1, 0.1}, {0.8, 0.1}, {0.1, 0.8}}) {
       const Eigen::Vector3d p = a + u * (b - a) + v * (c - a);
-      const double far = spend(its.rim.size() + 2 * caps_.size()) ? to_rim(its, p) : size_;
+      const double far = spend(its.rim.size() + 2 * asked_.size()) ? to_rim(its, p) : size_;
       if (far > its.off && settled(p + side) && settled(p - side)) its.off = far;
     }
   }
@@ -162,14 +178,16 @@ class stray_caps {
   }
   bool settled(const Eigen::Vector3d& p) {
     double number = 0;
-    for (std::size_t k = 0; k < caps_.size(); ++k) {
+    for (const std::size_t k : asked_) {
       const Eigen::Vector3d r = far_[k].middle - p;
+      double its = 0;
       if (const double d = r.norm(); d > 4 * far_[k].radius) {
-        number += far_[k].area.dot(r) / (d * d * d) / (4 * std::numbers::pi);
+        its = far_[k].area.dot(r) / (d * d * d) / (4 * std::numbers::pi);
       } else {
         if (!spend(caps_[k].triangles.size())) return true;
-        for (const auto& t : caps_[k].triangles) number += winding_of(at(t[0]) - p, at(t[1]) - p, at(t[2]) - p);
+        for (const auto& t : caps_[k].triangles) its += winding_of(at(t[0]) - p, at(t[1]) - p, at(t[2]) - p);
       }
+      number += turned_[caps_[k].body] ? -its : its;
     }
     constexpr double clearly = 0.1;
     return std::abs(number - std::round(number)) < clearly;
@@ -183,7 +201,10 @@ class stray_caps {
 
   std::span<const Eigen::Vector3d> vertices_;
   std::vector<cap>& caps_;
-  std::vector<dipole> far_;  // what each cap looks like from afar
+  const std::vector<bool>& turned_;
+  std::vector<bool> beside_;        // by body
+  std::vector<std::size_t> asked_;  // caps
+  std::vector<dipole> far_;         // what each cap looks like from afar
   double size_ = 0;
   std::size_t& patience_;
 };
@@ -193,9 +214,8 @@ class stray_caps {
 /// Caps over all holes of one body, of about the least area that closes them. A rim and its reverse get the same
 /// triangles, turned, so that two bodies that meet there leave nothing between their caps. `patience`: see
 /// span_polygon.
-inline std::vector<cap> caps_over(std::span<const Eigen::Vector3d> vertices,
-                                  std::vector<std::vector<std::uint32_t>> rims, std::size_t& patience) {
-  std::vector<cap> caps;
+inline void caps_over(std::span<const Eigen::Vector3d> vertices, std::uint32_t body,
+                      std::vector<std::vector<std::uint32_t>> rims, std::size_t& patience, std::vector<cap>& caps) {
   for (auto& polygon : detail::nested_rims(vertices, std::move(rims), patience).joined()) {
     const std::size_t n = polygon.size(),
                       start = std::size_t(std::min_element(polygon.begin(), polygon.end()) - polygon.begin());
@@ -205,10 +225,8 @@ inline std::vector<cap> caps_over(std::span<const Eigen::Vector3d> vertices,
     polygon_triangles triangles = span_polygon(vertices, walk, patience);
     if (turned)
       for (auto& t : triangles) std::swap(t[1], t[2]);
-    caps.push_back({std::move(polygon), std::move(triangles)});
+    caps.push_back({body, std::move(polygon), std::move(triangles)});
   }
-  detail::stray_caps(vertices, caps, patience).measure();
-  return caps;
 }
 
 /// How many more times a surface walks an edge from low to high than back; never 0.

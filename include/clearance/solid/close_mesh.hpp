@@ -36,10 +36,9 @@ inline std::vector<bool> cancelling_bodies(const closed_mesh& mesh, const basic_
 /// What a flood from outside does not reach in a mesh's shapes.
 class second_opinion {
  public:
-  /// `shape`: the shape of each triangle, caps included. `more`: triangles by shape that are no surface, but walls.
-  second_opinion(const closed_mesh& mesh, std::span<const std::uint32_t> shape,
-                 const std::vector<polygon_triangles>& more)
-      : mesh_(mesh), triangles_of_(more) {
+  /// `shape`: the shape of each triangle, caps included. `strays`: by shape, caps that are no surface.
+  second_opinion(const closed_mesh& mesh, std::span<const std::uint32_t> shape, std::vector<polygon_triangles> strays)
+      : mesh_(mesh), strays_of_(std::move(strays)), triangles_of_(strays_of_.size()) {
     for (std::uint32_t i = 0; i < shape.size(); ++i) triangles_of_[shape[i]].push_back(mesh.surface.triangles[i]);
   }
 
@@ -50,7 +49,7 @@ class second_opinion {
     extend(box, shape);
     const enclosure_grid grid = grid_around(box, coarse_cubes);
     const std::size_t row = grid.size[0], layer = row * grid.size[1];
-    const std::vector<std::uint32_t> bits = flooded(grid, shape, false);
+    const std::vector<std::uint32_t> bits = flooded(grid, shape, false, true);
     for (std::size_t i = 0; i < layer * grid.size[2]; ++i)
       if (bits[i / 32] >> i % 32 & 1) {
         const Eigen::Vector3d cube(i % row, i / row % grid.size[1], i / layer);
@@ -60,7 +59,8 @@ class second_opinion {
     return false;
   }
 
-  /// All cubes that floods around each of these shapes do not reach. `cube` is set even if nothing is enclosed.
+  /// All cubes that floods around each of these shapes do not reach, be stray caps walls or not: they close holes, but
+  /// may divide the inside. `cube` is set even if nothing is enclosed.
   enclosure_grid enclosed(const std::vector<bool>& shapes) const {
     Eigen::AlignedBox3d box;
     for (std::uint32_t s = 0; s < shapes.size(); ++s)
@@ -70,9 +70,12 @@ class second_opinion {
     std::vector<std::uint32_t> all;
     for (std::uint32_t s = 0; s < shapes.size(); ++s) {
       if (!shapes[s]) continue;
-      const std::vector<std::uint32_t> bits = flooded(grid, s, true);
-      all.resize(bits.size());
-      for (std::size_t i = 0; i < bits.size(); ++i) all[i] |= bits[i];
+      for (const bool strays : {false, true}) {
+        if (strays && strays_of_[s].empty()) continue;
+        const std::vector<std::uint32_t> bits = flooded(grid, s, true, strays);
+        all.resize(bits.size());
+        for (std::size_t i = 0; i < bits.size(); ++i) all[i] |= bits[i];
+      }
     }
     if (std::any_of(all.begin(), all.end(), [](std::uint32_t word) { return word != 0; })) grid.bits = std::move(all);
     return grid;
@@ -90,14 +93,17 @@ class second_opinion {
     for (const auto& t : triangles_of_[shape])
       for (const auto& c : corners(t)) box.extend(c);
   }
-  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages) const {
+  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages,
+                                     bool strays) const {
     flood from_outside(grid, passages);
     for (const auto& t : triangles_of_[shape]) from_outside.add(corners(t));
+    if (strays)
+      for (const auto& t : strays_of_[shape]) from_outside.add(corners(t));
     return from_outside.enclosed();
   }
 
   const closed_mesh& mesh_;
-  std::vector<polygon_triangles> triangles_of_;
+  std::vector<polygon_triangles> strays_of_, triangles_of_;
 };
 
 namespace detail {

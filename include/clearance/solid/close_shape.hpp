@@ -127,31 +127,6 @@ inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& o
   return best;
 }
 
-/// Adds caps over all holes, after the triangles; each cap belongs to the body that it closes. A body with a cap that
-/// lies astray stays open.
-inline std::uint32_t add_caps(shape_surface& s, std::size_t& patience) {
-  std::uint32_t holes = 0;
-  s.open.assign(s.bodies.one_sided.size(), false);
-  Eigen::AlignedBox3d box;
-  for (const auto& v : s.mesh.vertices) box.extend(v);
-  for (const body_rim& rim : s.rims) {
-    for (const cap& c : caps_over(s.mesh.vertices, boundary_loops(s.mesh.vertices, rim.edges), patience)) {
-      const bool astray = c.off > most_moved * box.diagonal().norm();
-      polygon_triangles& to = astray ? s.strays : s.mesh.triangles;
-      to.insert(to.end(), c.triangles.begin(), c.triangles.end());
-      if (astray) {
-        s.open[rim.body] = true;
-      } else {
-        s.moved = std::max(s.moved, c.off);
-        ++holes;
-      }
-    }
-    s.bodies.body.resize(s.mesh.triangles.size(), rim.body);
-  }
-  s.counts.resize(s.mesh.triangles.size(), 1);
-  return holes;
-}
-
 /// The signed volume of each body, cubic metres; meaningless for open bodies.
 inline std::vector<double> body_volumes(const shape_surface& s) {
   std::vector<double> volumes(s.bodies.one_sided.size(), 0);
@@ -166,6 +141,39 @@ inline std::vector<double> body_volumes(const shape_surface& s) {
     volumes[s.bodies.body[i]] += a.dot(b.cross(c)) / 6;
   }
   return volumes;
+}
+
+/// Adds caps over all holes, after the triangles; each cap belongs to the body that it closes. A body with a cap that
+/// lies astray stays open.
+inline std::uint32_t add_caps(shape_surface& s, std::size_t& patience) {
+  std::vector<cap> caps;
+  for (const body_rim& rim : s.rims)
+    caps_over(s.mesh.vertices, rim.body, boundary_loops(s.mesh.vertices, rim.edges), patience, caps);
+  const std::size_t loaded = s.mesh.triangles.size();
+  const auto add = [&s](const cap& c) {
+    s.mesh.triangles.insert(s.mesh.triangles.end(), c.triangles.begin(), c.triangles.end());
+    s.bodies.body.resize(s.mesh.triangles.size(), c.body);
+    s.counts.resize(s.mesh.triangles.size(), 1);
+  };
+  for (const cap& c : caps) add(c);
+  std::vector<bool> turned;
+  for (const double volume : body_volumes(s)) turned.push_back(volume < 0);
+  detail::stray_caps(s.mesh.vertices, caps, turned, patience).measure();
+
+  s.mesh.triangles.resize(loaded), s.bodies.body.resize(loaded), s.counts.resize(loaded);
+  s.open.assign(turned.size(), false);
+  Eigen::AlignedBox3d box;
+  for (const auto& v : s.mesh.vertices) box.extend(v);
+  std::uint32_t holes = 0;
+  for (const cap& c : caps)
+    if (c.off > most_moved * box.diagonal().norm()) {
+      s.strays.insert(s.strays.end(), c.triangles.begin(), c.triangles.end());
+      s.open[c.body] = true;
+    } else {
+      s.moved = std::max(s.moved, c.off);
+      add(c), ++holes;
+    }
+  return holes;
 }
 
 }  // namespace clearance

@@ -25,6 +25,7 @@ struct mesh_solid_view {
         p, within, [this, &p](std::uint32_t i, double best) { return triangles[i].nearer(p, best); }, enough);
   }
   CLEARANCE_HD bool inside(const vec3d& p) const { return winding.inside(p.x, p.y, p.z); }
+  CLEARANCE_HD bool porous() const { return winding.enclosed != nullptr; }
 
   /// Calls take(i) for each triangle that is closer to p than `reach`.
   CLEARANCE_CALLS_ANYTHING

@@ -21,7 +21,7 @@ namespace clearance {
 /// Law: `bounds()` contains the solid.
 /// Law: `distance(p)` is not negative, and at most the distance from p to the surface, inside and outside alike.
 /// Between two points it differs by at most their distance.
-/// Law: `inside(p)` is the same for all points that no surface separates.
+/// Law: `inside(p)` is the same for all points that no surface separates, unless the view is `porous()`.
 ///
 /// Optional: `tolerance()`, metres from the surface within which `inside` may be wrong; `volume()` in cubic metres, for
 /// the fill ratio; `surface_points(count)`, evenly spread over the surface, for mean gaps; `corners()`, where gaps tend
@@ -41,6 +41,7 @@ concept solid = requires(const S s, Eigen::Vector3d p) {
 ///
 /// Optional, for faster climbs: `near(p, reach, take)` calls take(i) with the number of each piece of the surface
 /// closer to p than `reach`; `nearer(i, p, best)` is the distance to that piece if below `best`, else `best`.
+/// `porous()`, if the inside may end where no surface is: then packing asks `inside` of every place.
 template <class V>
 concept solid_view = std::is_trivially_copyable_v<V> && requires(const V v, vec3d p, double d) {
   { v.distance(p, d, d) } -> std::same_as<double>;
