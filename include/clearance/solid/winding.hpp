@@ -275,10 +275,8 @@ basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t
   }
   if (!w.triangles.empty()) {
     detail::winding_grid<T> made(w);
-  } else if (mesh.inside == inside_by::flood) {
-    w.cells = {0, 0};  // never looked at, because no point is between low and high
   } else {
-    throw std::invalid_argument("clearance: no triangle of the mesh has an area");
+    w.cells = {0, 0};  // never looked at, because no point is between low and high
   }
   w.enclosed = mesh.enclosed.packed<T>();
   return w;
