@@ -71,6 +71,24 @@ TEST_CASE("Lists of pairs are certain by each pair's own part, as the same pair 
   CHECK(other > 1000);
 }
 
+TEST_CASE("The frames of a prepared question share what each part may be nearer, until one of them is written") {
+  dice d(81);
+  const auto model = sloppy_spheres<clearance::sphere>(d, true);
+  const auto poses = some_poses(d, model.view().size());
+  const auto points = d.points(400, 1.5);
+  clearance::query ask(host{}, model, clearance::nearest_k{.k = 2});
+  const auto first = ask(poses, clearance::point_span(points)).certain.slops,
+             next = ask(poses, clearance::point_span(points)).certain.slops;
+  CHECK(first.begin() == next.begin());
+  auto wider = next;
+  wider.data()[0] += 1;
+  auto both = next;
+  both.widen(wider);
+  CHECK(both == wider);
+  CHECK(next == first);
+  CHECK(next[0] == wider[0] - 1);
+}
+
 TEST_CASE("What points confirm is certain by each part's own gap and tolerance, however many are alone before them") {
   verdict v;
   dice d(80);

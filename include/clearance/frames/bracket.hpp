@@ -7,6 +7,7 @@
 #include <clearance/result.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -79,12 +80,52 @@ CLEARANCE_HD inline void allow_for_too_close(min_distance_result& r) {
 
 namespace clearance {
 
+/// By how much each part may be nearer than its primitives, metres: a list that is copied when it is written, so that
+/// the frames of a prepared question share one.
+class part_slops {
+ public:
+  using value_type = double;
+
+  bool empty() const { return size() == 0; }
+  std::size_t size() const { return list_ ? list_->size() : 0; }
+  const double* data() const { return list_ ? list_->data() : nullptr; }
+  const double* begin() const { return data(); }
+  const double* end() const { return data() + size(); }
+  double operator[](std::size_t part) const { return (*list_)[part]; }
+  friend bool operator==(const part_slops& a, const part_slops& b) { return std::ranges::equal(a, b); }
+
+  double* data() { return own().data(); }
+  void resize(std::size_t parts) { own().resize(parts); }
+  /// Those of these parts; written only if they have changed.
+  const part_slops& of(std::span<const part_facts> facts) {
+    const auto its = [](const part_facts& f) { return frames::slop(f); };
+    if (std::ranges::equal(*this, facts, {}, {}, its)) return *this;
+    resize(facts.size());
+    std::ranges::transform(facts, data(), its);
+    return *this;
+  }
+  /// Covers the other's, too.
+  void widen(const part_slops& other) {
+    if (*this == other) return;
+    resize(std::max(size(), other.size()));
+    for (std::size_t k = 0; k < other.size(); ++k) data()[k] = std::max((*this)[k], other[k]);
+  }
+
+ private:
+  std::vector<double>& own() {
+    if (!list_ || list_.use_count() > 1) list_ = std::make_shared<std::vector<double>>(begin(), end());
+    return *list_;
+  }
+
+  std::shared_ptr<std::vector<double>> list_;
+};
+
 /// How certain a computed distance is: the error of arithmetic, poses and the source's own rounding, and by how much a
 /// part may be nearer than its primitives (gap and tolerance). Metres.
 struct distance_certainty {
   frames::float_error error;
-  double slop = 0;                 ///< The largest of all parts,
-  std::vector<double> slops = {};  ///< and each part's own, where the answer is about each.
+  double slop = 0;        ///< The largest of all parts,
+  part_slops slops = {};  ///< and each part's own, where the answer is about each.
 
   /// The solid is at least this far away, whichever part the distance is of; 0 if nothing more is certain, or if the
   /// distance is infinite or NaN.
@@ -98,8 +139,7 @@ struct distance_certainty {
   void widen(const distance_certainty& other) {
     error.widen(other.error);
     slop = std::max(slop, other.slop);
-    slops.resize(std::max(slops.size(), other.slops.size()));
-    for (std::size_t k = 0; k < other.slops.size(); ++k) slops[k] = std::max(slops[k], other.slops[k]);
+    slops.widen(other.slops);
   }
 
  private:
@@ -110,11 +150,6 @@ struct distance_certainty {
 };
 
 inline distance_certainty certainty_of(const frames::frame_facts& frame) { return {frame.error, frame.slop}; }
-inline distance_certainty certainty_of(const frames::frame_facts& frame, std::span<const part_facts> facts) {
-  distance_certainty all = certainty_of(frame);
-  for (const part_facts& f : facts) all.slops.push_back(frames::slop(f));
-  return all;
-}
 
 }  // namespace clearance
 

@@ -21,9 +21,10 @@ struct asked {
   std::size_t clouds, points;               ///< How many clouds there are, and points of all clouds.
   std::vector<real>& reaches;               ///< For the question's use: how near a point must be to each part.
   backends::kept_memory<On>& memory;
+  part_slops& slops;
 
   std::size_t parts() const { return facts.size(); }
-  distance_certainty certain() const { return certainty_of(frame, facts); }
+  distance_certainty certain() const { return {frame.error, frame.slop, slops.of(facts)}; }
 
   /// Memory that the backend can write, for `n` values, until the next frame.
   template <class T>
@@ -75,7 +76,7 @@ class passes {
   }
   /// The frame that was looked at.
   asked<On> last() {
-    return {on, model.facts, ahead_.frame, ahead_.first, ahead_.clouds, ahead_.points, ahead_.reaches, memory};
+    return {on, model.facts, ahead_.frame, ahead_.first, ahead_.clouds, ahead_.points, ahead_.reaches, memory, slops_};
   }
 
   /// Enqueues a pass; clouds must be readable where it runs. `here(source, cloud)` is what is asked of a source.
@@ -95,6 +96,7 @@ class passes {
  private:
   typename pairs_on<On>::template kept<PartView> pairs_;
   frames::frame_ahead ahead_;
+  part_slops slops_;
 };
 
 template <pair_question Q, class On, class PartView>
