@@ -254,8 +254,13 @@ TEST_CASE("A cap that would hang in free space is none: the body stays open, and
 
 TEST_CASE("Two halves that meet in a bent seam leave nothing free between their caps") {
   testing::verdict v;
-  std::size_t apart = 0;
-  for (unsigned k = 0; k < 40; ++k) {
+  unsigned apart = 0;
+#if defined(CLEARANCE_SANITIZED)
+  constexpr unsigned runs = 8;  // each is a flood
+#else
+  constexpr unsigned runs = 40;
+#endif
+  for (unsigned k = 0; k < runs; ++k) {
     dice d(k + 1);
     const Vector3d corner[4] = {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}};
     double bend[4];
@@ -294,7 +299,7 @@ TEST_CASE("Two halves that meet in a bent seam leave nothing free between their 
     }
     v.require(!w.view().inside(1.1, 0.5, 0.5), "run", k, ": not free outside");
   }
-  v.require(apart > 10, "too few caps part:", apart);
+  v.require(4 * apart > runs, "too few caps part:", apart);
 }
 
 TEST_CASE("A room whose seams are narrower than the tolerance is inside, however its panels meet") {
