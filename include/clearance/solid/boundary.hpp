@@ -124,7 +124,10 @@ class stray_caps {
   void measure() {
     for (std::size_t k = 0; k < caps_.size(); ++k) {
       if (area_of(vertices_, caps_[k].triangles) <= nearly_flat * far_[k].area.norm()) continue;
-      find_beside(k);
+      if (!find_beside(k)) {
+        caps_[k].off = size_;
+        continue;
+      }
       polygon_triangles largest = caps_[k].triangles;
       const auto size = [&](const auto& t) { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).squaredNorm(); };
       constexpr std::size_t most = 256;
@@ -143,15 +146,16 @@ class stray_caps {
   };
   const Eigen::Vector3d& at(std::uint32_t v) const { return vertices_[v]; }
 
-  /// All caps of the bodies that have a hole beside this one.
-  void find_beside(std::size_t k) {
-    spend(caps_.size() / 4);
+  /// All caps of the bodies that have a hole beside this one; false if patience ends.
+  bool find_beside(std::size_t k) {
+    if (!spend(caps_.size() / 4)) return false;
     std::fill(beside_.begin(), beside_.end(), false);
     for (std::size_t i = 0; i < caps_.size(); ++i)
       if (far_[i].box.intersects(far_[k].box)) beside_[caps_[i].body] = true;
     asked_.clear();
     for (std::size_t i = 0; i < caps_.size(); ++i)
       if (beside_[caps_[i].body]) asked_.push_back(i);
+    return true;
   }
   void measure(cap& its, const std::array<std::uint32_t, 3>& t) {
     const Eigen::Vector3d &a = at(t[0]), &b = at(t[1]), &c = at(t[2]), normal = (b - a).cross(c - a);

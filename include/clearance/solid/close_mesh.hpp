@@ -49,7 +49,7 @@ class second_opinion {
     extend(box, shape);
     const enclosure_grid grid = grid_around(box, coarse_cubes);
     const std::size_t row = grid.size[0], layer = row * grid.size[1];
-    const std::vector<std::uint32_t> bits = flooded(grid, shape, false, true);
+    const std::vector<std::uint32_t> bits = flooded(grid, shape, false);
     for (std::size_t i = 0; i < layer * grid.size[2]; ++i)
       if (bits[i / 32] >> i % 32 & 1) {
         const Eigen::Vector3d cube(i % row, i / row % grid.size[1], i / layer);
@@ -59,8 +59,7 @@ class second_opinion {
     return false;
   }
 
-  /// All cubes that floods around each of these shapes do not reach, be stray caps walls or not: they close holes, but
-  /// may divide the inside. `cube` is set even if nothing is enclosed.
+  /// All cubes that floods around each of these shapes do not reach. `cube` is set even if nothing is enclosed.
   enclosure_grid enclosed(const std::vector<bool>& shapes) const {
     Eigen::AlignedBox3d box;
     for (std::uint32_t s = 0; s < shapes.size(); ++s)
@@ -70,12 +69,7 @@ class second_opinion {
     std::vector<std::uint32_t> all;
     for (std::uint32_t s = 0; s < shapes.size(); ++s) {
       if (!shapes[s]) continue;
-      for (const bool strays : {false, true}) {
-        if (strays && strays_of_[s].empty()) continue;
-        const std::vector<std::uint32_t> bits = flooded(grid, s, true, strays);
-        all.resize(bits.size());
-        for (std::size_t i = 0; i < bits.size(); ++i) all[i] |= bits[i];
-      }
+      add(flooded(grid, s, true), all);
     }
     if (std::any_of(all.begin(), all.end(), [](std::uint32_t word) { return word != 0; })) grid.bits = std::move(all);
     return grid;
@@ -93,13 +87,19 @@ class second_opinion {
     for (const auto& t : triangles_of_[shape])
       for (const auto& c : corners(t)) box.extend(c);
   }
-  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages,
-                                     bool strays) const {
+  /// What is enclosed if stray caps are no walls, or if they are: they close holes, but may divide the inside.
+  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages) const {
     flood from_outside(grid, passages);
     for (const auto& t : triangles_of_[shape]) from_outside.add(corners(t));
-    if (strays)
-      for (const auto& t : strays_of_[shape]) from_outside.add(corners(t));
-    return from_outside.enclosed();
+    std::vector<std::uint32_t> bits = from_outside.enclosed();
+    if (strays_of_[shape].empty()) return bits;
+    for (const auto& t : strays_of_[shape]) from_outside.add(corners(t));
+    add(from_outside.enclosed(), bits);
+    return bits;
+  }
+  static void add(const std::vector<std::uint32_t>& some, std::vector<std::uint32_t>& bits) {
+    bits.resize(some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) bits[i] |= some[i];
   }
 
   const closed_mesh& mesh_;
