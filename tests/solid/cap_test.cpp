@@ -78,6 +78,23 @@ double off_curve(const std::vector<Vector3d>& loop, const Vector3d& p) {
 
 }  // namespace
 
+TEST_CASE("A polygon whose areas no number can hold is spanned all the same") {
+  for (const std::uint32_t corners : {4u, 5u, 40u, 300u})  // by the least area, and zipped
+    for (const double far : {1e155, 1e200, 1e300, 1.7e308}) {
+      INFO(corners << " corners, one at " << far << " m");
+      std::vector<Vector3d> vertices;
+      std::vector<std::uint32_t> polygon;
+      for (std::uint32_t i = 0; i < corners; ++i) {
+        vertices.emplace_back(std::cos(6.28 * i / corners), std::sin(6.28 * i / corners), i % 3);
+        polygon.push_back(i);
+      }
+      vertices[corners / 2] = {far, -far, 0};
+      const polygon_triangles triangles = spanned(vertices);
+      CHECK(triangles.size() == corners - 2);
+      CHECK(has_rim(triangles, polygon));
+    }
+}
+
 TEST_CASE("A crack's cap lies in the crack, however long, narrow, bent or crossing it is") {
   testing::verdict v;
   for (unsigned k = 0; k < 600; ++k) {

@@ -126,6 +126,7 @@ inline polygon_triangles least_area(std::span<const Eigen::Vector3d> vertices, s
       const std::size_t j = i + width;
       const Eigen::Vector3d &a = vertices[polygon[i]], side = vertices[polygon[j]] - a;
       double best = std::numeric_limits<double>::infinity();
+      between[i * n + j] = std::uint32_t(i + 1);  // if no area is finite
       for (std::size_t k = i + 1; k < j; ++k) {
         const double rest = least[i * n + k] + least[k * n + j];
         if (!(rest < best)) continue;
@@ -174,7 +175,8 @@ inline polygon_triangles zipped(std::span<const Eigen::Vector3d> vertices, std::
   std::vector<std::pair<double, std::uint32_t>> ends;
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector3d back = corner(i + n - 1) - corner(i), on = corner(i + 1) - corner(i);
-    ends.emplace_back(-back.dot(on) / std::max(back.norm() * on.norm(), 1e-300), std::uint32_t(i));
+    const double sharp = -back.dot(on) / std::max(back.norm() * on.norm(), 1e-300);
+    ends.emplace_back(std::isnan(sharp) ? 0 : sharp, std::uint32_t(i));  // sides beyond 1e154 metres
   }
   const std::size_t tries = zip_tries(n);
   std::partial_sort(ends.begin(), ends.begin() + std::ptrdiff_t(tries), ends.end());
@@ -227,7 +229,7 @@ inline polygon_triangles span_polygon(std::span<const Eigen::Vector3d> vertices,
     patience -= looks;
   }
   polygon_triangles other = n <= few ? detail::least_area(vertices, polygon) : detail::zipped(vertices, polygon);
-  return area_of(vertices, other) * nearly_flat < area ? other : best;  // what is as good stays
+  return best.empty() || area_of(vertices, other) * nearly_flat < area ? other : best;  // what is as good stays
 }
 
 }  // namespace clearance
