@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the target clearance::io if everything it needs is found; otherwise clearance_io_missing lists the missing
-# Debian packages. Our own build includes this, and so does the installed package (for COMPONENTS io).
+# Finds what programs with clearance::io link besides; clearance_io_missing lists the missing Debian packages. Our own
+# build includes this, and so does the installed package (for COMPONENTS io).
 
 set(clearance_io_missing)
 
@@ -33,10 +33,6 @@ find_package(EXPAT QUIET)
 if(NOT TARGET EXPAT::EXPAT)
   list(APPEND clearance_io_missing libexpat1-dev)
 endif()
-find_package(nlohmann_json CONFIG QUIET)
-if(NOT TARGET nlohmann_json::nlohmann_json)
-  list(APPEND clearance_io_missing nlohmann-json3-dev)
-endif()
 find_package(yaml-cpp CONFIG QUIET)
 set(clearance_yaml yaml-cpp::yaml-cpp)  # its name since 0.8
 if(NOT TARGET yaml-cpp::yaml-cpp)
@@ -47,26 +43,11 @@ if(TARGET ${clearance_yaml})
 else()
   list(APPEND clearance_io_missing libyaml-cpp-dev)
 endif()
-find_path(CLEARANCE_STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb)
-find_path(CLEARANCE_XXHASH_INCLUDE_DIR xxhash.h)
-find_path(CLEARANCE_LZF_INCLUDE_DIR liblzf/lzf.h)
 find_library(CLEARANCE_LZF_LIBRARY lzf)
-mark_as_advanced(CLEARANCE_STB_INCLUDE_DIR CLEARANCE_XXHASH_INCLUDE_DIR CLEARANCE_LZF_INCLUDE_DIR CLEARANCE_LZF_LIBRARY)
-if(NOT CLEARANCE_STB_INCLUDE_DIR)
-  list(APPEND clearance_io_missing libstb-dev)
-endif()
-if(NOT CLEARANCE_XXHASH_INCLUDE_DIR)
-  list(APPEND clearance_io_missing libxxhash-dev)
-endif()
-if(NOT CLEARANCE_LZF_INCLUDE_DIR OR NOT CLEARANCE_LZF_LIBRARY)
+mark_as_advanced(CLEARANCE_LZF_LIBRARY)
+if(NOT CLEARANCE_LZF_LIBRARY)
   list(APPEND clearance_io_missing liblzf-dev)
-endif()
-
-if(NOT clearance_io_missing AND NOT TARGET clearance::io)
-  add_library(clearance::io INTERFACE IMPORTED GLOBAL)
-  target_include_directories(clearance::io SYSTEM INTERFACE ${CLEARANCE_STB_INCLUDE_DIR} ${CLEARANCE_XXHASH_INCLUDE_DIR}
-                                                          ${CLEARANCE_LZF_INCLUDE_DIR})
-  target_link_libraries(clearance::io INTERFACE clearance::clearance EXPAT::EXPAT
-                                                nlohmann_json::nlohmann_json ${clearance_yaml}
-                                                ${CLEARANCE_LZF_LIBRARY})
+elseif(NOT TARGET clearance::lzf)
+  add_library(clearance::lzf UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(clearance::lzf PROPERTIES IMPORTED_LOCATION ${CLEARANCE_LZF_LIBRARY})
 endif()

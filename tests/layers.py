@@ -35,6 +35,8 @@ FORBIDDEN = {
     "cub/cub.cuh": "include the one cub header that is needed",
     "Eigen/Dense": "include Eigen/Core or Eigen/Geometry",
     "iostream": "the library never prints",
+    **{name: "files are read and written in src/" for name in (
+        "expat.h", "nlohmann/json.hpp", "yaml-cpp/yaml.h", "stb_image.h", "stb/stb_image.h", "liblzf/lzf.h", "xxhash.h")},
 }
 
 root = pathlib.Path(sys.argv[1])

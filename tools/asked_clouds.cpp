@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_clouds.hpp"
 
+#include <clearance/io/kinematics.hpp>
+#include <clearance/io/sentence.hpp>
 #include "camera_checks.hpp"
 #include "certain_report.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "asked_robot.hpp"
 
+#include <clearance/io/error.hpp>
 #include "command_line.hpp"
 #include "kept_packings.hpp"
 #include "noted_files.hpp"

@@ -3,7 +3,7 @@
 // What the subcommands share: how words become numbers and poses, and the errors if they do not.
 
 #include <clearance/io/limits.hpp>
-#include <clearance/io/mesh_gltf.hpp>
+#include <clearance/io/mesh.hpp>
 #include <clearance/io/sentence.hpp>
 
 #include <Eigen/Geometry>

@@ -9,6 +9,7 @@
 #include "stopwatch.hpp"
 
 #include <clearance/io/scene.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <CLI/CLI.hpp>
 

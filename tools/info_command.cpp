@@ -8,6 +8,7 @@
 #include "robot_bodies.hpp"
 
 #include <clearance/ground/config.hpp>
+#include <clearance/io/error.hpp>
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/robot.hpp>
 

@@ -3,6 +3,7 @@
 // Files that the command reads beside a robot's description, with notes that begin with the file's name.
 
 #include <clearance/io/mesh.hpp>
+#include <clearance/io/sentence.hpp>
 #include <clearance/io/spheres_file.hpp>
 
 #include <optional>

@@ -7,8 +7,10 @@
 #include "report_text.hpp"
 #include "robot_bodies.hpp"
 
+#include <clearance/io/error.hpp>
 #include <clearance/io/packing_scene.hpp>
 #include <clearance/io/robot.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <CLI/CLI.hpp>
 

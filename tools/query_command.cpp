@@ -10,8 +10,10 @@
 #include "scale_notes.hpp"
 #include "stopwatch.hpp"
 
+#include <clearance/io/error.hpp>
 #include <clearance/io/hidden_mesh.hpp>
 #include <clearance/io/jacobian.hpp>
+#include <clearance/io/write_file.hpp>
 
 #include <CLI/CLI.hpp>
 

@@ -5,7 +5,7 @@
 
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
-#include <clearance/io/mesh_gltf.hpp>
+#include <clearance/io/mesh.hpp>
 #include <clearance/points/hidden.hpp>
 
 #include <Eigen/Geometry>

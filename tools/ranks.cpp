@@ -4,6 +4,7 @@
 #include "robot_bodies.hpp"
 #include "stopwatch.hpp"
 
+#include <clearance/io/bytes.hpp>
 #include <clearance/io/digest.hpp>
 #include <clearance/io/joint_motion.hpp>
 #include <clearance/motion_clearance.hpp>

@@ -6,6 +6,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/io/robot.hpp>
 #include <clearance/io/text_file.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/unseen.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report_csv.hpp"
+#include <clearance/io/sentence.hpp>
 
 #include <cmath>
 

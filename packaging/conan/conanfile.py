@@ -20,9 +20,8 @@ class Clearance(ConanFile):
     description = "How far is this robot from everything its depth sensor sees"
     license = "BSD-3-Clause"
     topics = ("robotics", "collision", "distance", "point-cloud", "bvh", "cuda")
-    package_type = "header-library"
     settings = "os", "arch", "compiler", "build_type"
-    options = {"io": [True, False]}  # what the component io needs, too
+    options = {"io": [True, False]}  # with the component io, which is compiled
     default_options = {"io": False}
     no_copy_source = True
 
@@ -34,7 +33,7 @@ class Clearance(ConanFile):
         copy(self, "lib.sh", checkout(self) / "scripts", self.export_folder)  # names Debian's packages
 
     def export_sources(self):
-        files = ("CMakeLists.txt", "CHANGELOG.md", "LICENSE", "package.xml", "scripts/lib.sh", "cmake/*", "include/*")
+        files = ("CMakeLists.txt", "CHANGELOG.md", "LICENSE", "package.xml", "scripts/lib.sh", "cmake/*", "include/*", "src/*")
         for pattern in files:
             copy(self, pattern, checkout(self), self.export_sources_folder)
 
@@ -54,15 +53,18 @@ class Clearance(ConanFile):
 
     def package(self):
         cmake = CMake(self)
-        cmake.configure(variables={f"CLEARANCE_BUILD_{part}": "OFF" for part in ("TESTS", "EXAMPLES", "BENCH", "TOOLS")})
+        parts = {f"CLEARANCE_BUILD_{part}": "OFF" for part in ("TESTS", "EXAMPLES", "BENCH", "TOOLS")}
+        cmake.configure(variables={**parts, "CLEARANCE_BUILD_IO": "ON" if self.options.io else "OFF"})
+        cmake.build()  # the component io; without it there is nothing to build
         cmake.install()
 
     def package_id(self):
-        self.info.clear()
+        if not self.info.options.io:
+            self.info.clear()  # headers alone
 
     def package_info(self):
         # Its own CMake files are found, not ones that Conan makes up: they know the flags of nvcc and the component io.
         self.cpp_info.set_property("cmake_find_mode", "none")
         self.cpp_info.builddirs = ["share/cmake/clearance"]
         self.cpp_info.bindirs = []
-        self.cpp_info.libdirs = []
+        self.cpp_info.libdirs = ["lib"] if self.options.io else []

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The structs of robots, scenes and bodies, with each member wrong.
 #include "doors/refusals.hpp"
+#include "io/glb_writer.hpp"
+#include "io/robot_link.hpp"
 #include "solid/shapes.hpp"
 
 #include <clearance/io/joint_motion.hpp>
 #include <clearance/io/part_radii.hpp>
+#include <clearance/io/robot.hpp>
 #include <clearance/io/robot_bodies.hpp>
-#include <clearance/io/robot_link.hpp>
 #include <clearance/io/scene.hpp>
 
 namespace files_test {

@@ -3,6 +3,7 @@
 // safely.
 
 #include "fuzz/fuzz.hpp"
+#include "io/png_check.hpp"
 
 #include <clearance/io/field_cache.hpp>
 #include <clearance/usual_models.hpp>

@@ -2,7 +2,7 @@
 #include "fuzz/fuzz.hpp"
 
 #include <clearance/io/bytes.hpp>
-#include <clearance/io/png_check.hpp>
+#include "io/png_check.hpp"
 
 namespace ist_target {
 

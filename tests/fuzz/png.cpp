@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/fuzz.hpp"
+#include "io/png_check.hpp"
 
 #include <clearance/io/png.hpp>
 

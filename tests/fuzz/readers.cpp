@@ -2,6 +2,7 @@
 #include "fuzz/fuzz.hpp"
 
 #include <clearance/io/cloud_file.hpp>
+#include <clearance/io/ist.hpp>
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/ply_writer.hpp>
 #include <clearance/io/spheres_file.hpp>

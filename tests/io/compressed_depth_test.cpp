@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/png_check.hpp"
 #include "io/scratch_file.hpp"
 #include "support/laws.hpp"
 
+#include <clearance/io/bytes.hpp>
 #include <clearance/io/compressed_depth.hpp>
 
 #include <cstring>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/png_check.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/io/pcd.hpp>
+#include <clearance/io/cloud_file.hpp>
 #include <clearance/io/png.hpp>
 
 #include <array>

@@ -9,6 +9,7 @@
 #include "tools/small_png.hpp"
 
 #include <clearance/io/cloud_file.hpp>
+#include <clearance/io/ist.hpp>
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/ply_writer.hpp>
 #include <clearance/io/png.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fields in files and in the cache.
+#include "io/png_check.hpp"
 #include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
 #include "solid/shapes.hpp"

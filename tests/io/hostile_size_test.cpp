@@ -3,6 +3,7 @@
 // these took minutes, or gigabytes, before their readers were mended.
 
 #include "io/damage.hpp"
+#include "io/near_word.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/mesh.hpp>

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/png_check.hpp"
 #include "io/scratch_file.hpp"
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/backends/host.hpp>
+#include <clearance/io/bytes.hpp>
+#include <clearance/io/error.hpp>
 #include <clearance/io/ist.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/damage.hpp"
+#include "io/xml.hpp"
 
 #include <clearance/io/mesh.hpp>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh_polygons.hpp"
 #include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"

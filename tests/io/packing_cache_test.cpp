@@ -4,8 +4,12 @@
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 
+#include <clearance/io/error.hpp>
+#include <clearance/io/ist.hpp>
 #include <clearance/io/packing_cache.hpp>
 #include <clearance/io/spheres_file.hpp>
+#include <clearance/packing/pack.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <sys/stat.h>
 

@@ -2,7 +2,9 @@
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
-#include <clearance/io/pcd.hpp>
+#include <clearance/io/cloud_file.hpp>
+
+#include <liblzf/lzf.h>
 
 #include <random>
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PLY files from a generator: every type, format and order, compared with the values they were made from.
+#include "io/ply_values.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/io/cloud_file.hpp>
-#include <clearance/io/mesh_ply.hpp>
+#include "io/mesh_formats.hpp"
 
 #include <array>
 #include <cstring>

@@ -4,8 +4,10 @@
 #include "support/catch.hpp"
 #include "tools/small_png.hpp"
 
-#include <clearance/io/pcd.hpp>
+#include <clearance/io/cloud_file.hpp>
 #include <clearance/io/png.hpp>
+
+#include <liblzf/lzf.h>
 
 namespace read_limits_test {
 

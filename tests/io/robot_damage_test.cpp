@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/damage.hpp"
+#include "io/urdf.hpp"
+#include "io/xml.hpp"
 
+#include <clearance/io/error.hpp>
 #include <clearance/io/robot.hpp>
 
 #include <algorithm>

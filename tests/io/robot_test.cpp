@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/robot_folder.hpp"
+#include "io/robot_link.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/io/robot.hpp>

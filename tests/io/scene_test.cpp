@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/glb_writer.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
 
+#include <clearance/bvh/build.hpp>
+#include <clearance/io/error.hpp>
 #include <clearance/io/hidden_mesh.hpp>
 #include <clearance/io/packing_scene.hpp>
 #include <clearance/io/scene.hpp>
+#include <clearance/volume/sphere.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -4,8 +4,10 @@
 #include "support/catch.hpp"
 #include "support/random.hpp"
 
+#include <clearance/io/certify.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/io/spheres_file.hpp>
+#include <clearance/io/spheres_yaml.hpp>
 #include <clearance/packing/pack.hpp>
 
 #include <bit>

@@ -4,9 +4,9 @@
 #include "support/catch.hpp"
 
 #include <clearance/io/cloud_file.hpp>
-#include <clearance/io/mesh_obj.hpp>
-#include <clearance/io/mesh_off.hpp>
+#include <clearance/io/cloud_text.hpp>
 #include <clearance/io/spheres_file.hpp>
+#include "io/mesh_formats.hpp"
 
 #include <random>
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file has no name until it is completely written.
+#include "io/file_beside.hpp"
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"
 
 #include <clearance/io/write_file.hpp>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -47,14 +49,14 @@ TEST_CASE("whatever ends a program that writes a file leaves nothing, and the fi
     if (there) folder.put("old", "old");
     const std::size_t before = files(folder);
     {
-      io::detail::file_beside made(file, 0600);
+      io::file_beside made(file, 0600);
       made.write("half");
       CHECK(files(folder) == before);
     }
     CHECK(files(folder) == before);
     const ::pid_t child = ::fork();
     if (child == 0) {
-      io::detail::file_beside made(file, 0600);
+      io::file_beside made(file, 0600);
       made.write("half");
       std::raise(SIGKILL);
     }
@@ -132,7 +134,7 @@ TEST_CASE("a file that appears while another of its name is written is replaced,
   const robot_folder folder;
   const std::string file = (folder.path / "f").string();
   {
-    io::detail::file_beside made(file, 0600);
+    io::file_beside made(file, 0600);
     made.write("mine");
     folder.put("f", "another's");
     made.put_in_place();
@@ -140,7 +142,7 @@ TEST_CASE("a file that appears while another of its name is written is replaced,
   CHECK(content(file) == "mine");
   fs::remove(file);
   {
-    io::detail::file_beside made(file, 0600);
+    io::file_beside made(file, 0600);
     fs::create_directory(file);
     CHECK(says(sentence([&] { made.put_in_place(); }), "cannot take its place"));
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/io/xml.hpp>
+#include "io/xml.hpp"
 
 #include <string>
 

@@ -4,6 +4,8 @@
 #include "io/scratch_file.hpp"
 #include "tools/run_command.hpp"
 
+#include <clearance/io/error.hpp>
+#include <clearance/io/ist.hpp>
 #include <clearance/io/spheres_file.hpp>
 
 namespace packing_test {

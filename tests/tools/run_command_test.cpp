@@ -3,7 +3,7 @@
 #include "tools/small_png.hpp"
 #include "tools/two_boxes.hpp"
 
-#include <clearance/io/xml.hpp>
+#include "io/xml.hpp"
 
 #include <sys/stat.h>
 

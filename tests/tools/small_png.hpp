@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <clearance/io/png_check.hpp>
+#include "io/png_check.hpp"
 
 #include <cstdint>
 #include <string>

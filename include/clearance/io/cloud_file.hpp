@@ -3,135 +3,38 @@
 // Reads a point cloud from a file, by the ending of its name. PLY and plain text are read here.
 
 #include <clearance/io/cloud.hpp>
-#include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
-#include <clearance/io/pcd.hpp>
-#include <clearance/io/ply_values.hpp>
-#include <clearance/io/text_file.hpp>
 
-#include <algorithm>
-#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace clearance::io {
 
 /// Reads a PLY file from memory; `file` is its name in the cloud and in errors.
-inline cloud read_ply(std::string_view rest, const std::string& file) {
-  const ply_header header = take_ply_header(rest, file);
-  if (!header.elements.empty() && !header.find("vertex")) refuse(file, "a PLY point cloud needs the element vertex");
-  std::vector<Eigen::Vector3d> points;
-  read_ply_values(
-      rest, header, file, [&](const ply_values&, const double* p) { points.emplace_back(p[0], p[1], p[2]); },
-      [](const auto&...) {});
-  return make_cloud(file, points, points.size(), 1);
-}
+cloud read_ply(std::string_view rest, const std::string& file);
 
 /// Reads the vertices of a PLY file, ascii or binary, in the file's order, in double. Everything else is checked and
 /// skipped. Throws std::runtime_error with a sentence if a value does not fit its type, or a count does not fit the
 /// data.
-inline cloud load_ply(const std::string& file, const read_limits& limits = {}) {
-  return read_ply(read_text(file, limits), file);
-}
+cloud load_ply(const std::string& file, const read_limits& limits = {});
 
-namespace detail {
+/// Reads a PCD file from memory; `file` is its name in the cloud and in errors.
+cloud read_pcd(std::string_view bytes, const std::string& file, const read_limits& limits = {});
 
-/// Are this number's digits grouped in threes, such as 1,234 or 5,000,000.5?
-inline bool in_thousands(std::string_view word) {
-  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-  for (std::size_t group = 0;; ++group) {
-    const std::size_t digits = std::min(word.find_first_not_of("0123456789"), word.size());
-    if (group == 0 ? digits < 1 || digits > 3 : digits != 3) return false;
-    word.remove_prefix(digits);
-    if (!word.starts_with(',')) return group > 0 && (word.empty() || word.starts_with('.'));
-    word.remove_prefix(1);
-  }
-}
-
-/// May a word with commas, beside others in its line, be one number? Not if it is two numbers with a point each.
-inline bool comma_of_one_number(std::string_view word) {
-  word.remove_prefix(std::min(word.find_first_not_of(','), word.size()));
-  while (word.ends_with(',')) word.remove_suffix(1);
-  const std::size_t first = word.find(','), last = word.rfind(',');
-  if (first == word.npos) return false;
-  if (first < last) return in_thousands(word);
-  return word.find('.') > first || word.rfind('.') < first;
-}
-
-/// Refuses a line whose x, y and z depend on how commas are read.
-inline void check_xyz_commas(std::string_view line, const std::string& file, std::size_t at) {
-  constexpr std::string_view others = " \t\r\v\f;";
-  std::size_t numbers = 0;
-  for (auto word = take_word(line, others); numbers < 3 && !word.empty(); word = take_word(line, others)) {
-    if ((numbers > 0 || line.find_first_not_of(" \t\r\v\f;,") != line.npos) && comma_of_one_number(word))
-      refuse(file, quoted(word) + " may be one number or several (decimal commas? write points)", at);
-    for (std::string_view rest = word; !take_word(rest, ",").empty();) ++numbers;
-  }
-}
-
-/// Takes the next value of a line; no value at the line's end. Between commas or semicolons it may be empty.
-inline std::optional<std::string_view> take_field(std::string_view& line) {
-  constexpr std::string_view blanks = " \t\r\v\f";
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  if (line.empty()) return std::nullopt;
-  const std::string_view field = line.substr(0, line.find_first_of(" \t\r\v\f,;"));
-  line.remove_prefix(field.size());
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  if (line.starts_with(',') || line.starts_with(';')) line.remove_prefix(1);
-  return field;
-}
-
-}  // namespace detail
+/// Reads a PCD file: ascii, binary or binary_compressed; its fields in any order and of any type; others are skipped.
+/// Throws std::runtime_error naming file and line, also if POINTS does not match the data.
+cloud load_pcd(const std::string& file, const read_limits& limits = {});
 
 /// Reads a text file with one point per line: x y z in metres, then anything. Every line has the same number of words,
 /// so that two lines run together are refused. Blanks, tabs, commas and semicolons separate words. A # at the start of
 /// a word begins a comment, and so does // at the start of a line; "nan" keeps a record's place. Throws
 /// std::runtime_error naming file and line, also for decimal commas and empty coordinates.
-inline cloud load_xyz(const std::string& file, const read_limits& limits = {}) {
-  const std::string bytes = read_text(file, limits);
-  std::string_view rest = without_mark(bytes);
-  std::vector<Eigen::Vector3d> points;
-  std::size_t usual = 0;  // words per line
-  for (std::size_t at = 1; !rest.empty(); ++at) {
-    std::string_view line = take_line(rest);
-    line = without_comment(line, " \t\r\v\f,;");
-    if (line.starts_with("//") || line.find_first_not_of(" \t\r\v\f,;") == line.npos) continue;
-    detail::check_xyz_commas(line, file, at);
-    Eigen::Vector3d p;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto word = detail::take_field(line);
-      if (!word) refuse(file, "a point needs three numbers, here are " + std::to_string(axis), at);
-      if (word->empty()) refuse(file, std::string("nothing stands for ") + "xyz"[axis] + " between separators", at);
-      const auto value = number<double>(*word);
-      if (!value) refuse(file, quoted(*word) + " is not a number", at);
-      p[axis] = *value;
-    }
-    std::size_t count = 3;
-    while (detail::take_field(line)) ++count;
-    if (points.empty()) usual = count;
-    if (count != usual)
-      refuse(file, "a point of " + std::to_string(count) + " words, the lines before have " + std::to_string(usual),
-             at);
-    points.push_back(p);
-  }
-  return make_cloud(file, points, points.size(), 1);
-}
+cloud load_xyz(const std::string& file, const read_limits& limits = {});
 
 /// The ending of a file's name in small letters, with its dot.
-inline std::string extension(const std::string& file) {
-  std::string end = std::filesystem::path(file).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  return end;
-}
+std::string extension(const std::string& file);
 
 /// Reads a point cloud by the ending of its name: .pcd, .ply, .xyz or .txt. Throws std::runtime_error.
-inline cloud load_cloud(const std::string& file, const read_limits& limits = {}) {
-  const std::string end = extension(file);
-  if (end == ".pcd") return within_memory(file, [&] { return load_pcd(file, limits); });
-  if (end == ".ply") return within_memory(file, [&] { return load_ply(file, limits); });
-  if (end == ".xyz" || end == ".txt") return within_memory(file, [&] { return load_xyz(file, limits); });
-  refuse(file, std::string("is no point cloud by its name: .pcd, .ply, .xyz and .txt are read") +
-                   (end == ".las" || end == ".laz" ? ", LAS and LAZ by the Python package (clearance.recordings.las)"
-                                                   : std::string()));
-}
+cloud load_cloud(const std::string& file, const read_limits& limits = {});
 
 }  // namespace clearance::io

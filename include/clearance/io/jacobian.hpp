@@ -7,49 +7,27 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
 namespace clearance::io {
 
 /// What each value of the configuration does to a link, in the frame of `at`: 6 x tree.size(). A column is the velocity
 /// of the link's point that is now at `at` (3), then the link's angular velocity (3), per metre or radian. Mimic joints
 /// count for the value that they follow. `link_poses` are those of all links, from link_poses or moved together. Throws
 /// std::invalid_argument if their number is wrong, or the tree has no such link.
-inline Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree,
-                                                         std::span<const Eigen::Isometry3d> link_poses,
-                                                         std::size_t link, const Eigen::Vector3d& at) {
-  if (link_poses.size() != tree.links().size() || link >= link_poses.size())
-    throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) + " links; here are " +
-                                std::to_string(link_poses.size()) + " poses and link number " + std::to_string(link));
-  Eigen::Matrix<double, 6, Eigen::Dynamic> all =
-      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, Eigen::Index(tree.size()));
-  for (std::size_t j; (j = tree.joint_above(link)) != tree.none; link = tree.link(tree.joints()[j].parent)) {
-    const joint& by = tree.joints()[j];
-    if (by.kind == joint_kind::fixed) continue;
-    const joint_drive& drive = tree.drive(j);
-    const Eigen::Vector3d axis =
-        drive.factor * (link_poses[link].linear() * by.axis);  // motion about or along it leaves it unchanged
-    auto column = all.col(Eigen::Index(drive.value));
-    if (by.kind == joint_kind::prismatic) {
-      column.head<3>() += axis;
-    } else {
-      column.head<3>() += axis.cross(at - link_poses[link].translation());
-      column.tail<3>() += axis;
-    }
-  }
-  return all;
-}
+Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree,
+                                                  std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
+                                                  const Eigen::Vector3d& at);
 
 /// The gradient of a distance with respect to the configuration: metres per metre or radian of its values. No value if
 /// the gradient with respect to the link's pose is not known. `g` and `link_poses` are in one frame. Throws as
 /// jacobian.
-inline std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree,
-                                                     std::span<const Eigen::Isometry3d> link_poses, std::size_t link,
-                                                     const pose_gradient& g) {
-  const auto moved = jacobian(tree, link_poses, link, {g.about.x, g.about.y, g.about.z});
-  if (!g) return std::nullopt;
-  Eigen::Matrix<double, 6, 1> by;
-  by << g.linear.x, g.linear.y, g.linear.z, g.angular.x, g.angular.y, g.angular.z;
-  return Eigen::VectorXd(moved.transpose() * by);
-}
+std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree, std::span<const Eigen::Isometry3d> link_poses,
+                                              std::size_t link, const pose_gradient& g);
 
 /// The same for a part of a robot in configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses,
 /// or if there is no such part.

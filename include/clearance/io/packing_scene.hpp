@@ -2,12 +2,11 @@
 #pragma once
 // A picture of packings for any glTF viewer: spheres in the transparent mesh, and the levels of their tree.
 
-#include <clearance/bvh/build.hpp>
 #include <clearance/io/scene.hpp>
 #include <clearance/packing/packing.hpp>
-#include <clearance/volume/sphere.hpp>
 
-#include <cmath>
+#include <string>
+#include <vector>
 
 namespace clearance::io {
 
@@ -17,13 +16,6 @@ struct scene_packing {
   packing spheres;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  // world-from-part
 };
-
-/// A colour for 0 to 1: from violet over green to yellow.
-inline colour heat(double t) {
-  const auto wave = [t](double at, double wide) { return float(std::exp(-std::pow((t - at) / wide, 2))); };
-  return {0.25f * wave(0, 0.35) + 0.95f * wave(1.1, 0.45), 0.15f + 0.7f * wave(0.95, 0.6),
-          0.15f + 0.5f * wave(0.2, 0.4), 1};
-}
 
 /// The volumes of a tree by level, starting at the root.
 template <class View>
@@ -42,30 +34,6 @@ std::vector<std::vector<ball>> levels_of(const View& tree) {
 /// Makes one node per part, with the part's name. In it are nodes that a viewer can switch on and off: "mesh",
 /// transparent; "spheres", one node per octave of radii; and one per level of the tree that a query walks (Weller &
 /// Zachmann 2009, figure 2).
-inline scene packing_scene(const std::vector<scene_packing>& parts) {
-  scene made;
-  for (const scene_packing& part : parts) {
-    made.bodies.push_back({part.name + " mesh", part.mesh, part.pose, {0.75f, 0.78f, 0.85f, 0.22f}, part.name});
-    std::map<int, std::vector<ball>, std::greater<>> octaves;
-    for (const inner_sphere& s : part.spheres.spheres)
-      octaves[std::ilogb(s.radius / 1e-3f)].push_back({s.center, s.radius});
-    const int high = octaves.begin()->first, low = octaves.rbegin()->first;
-    for (auto& [octave, balls] : octaves) {
-      const double from = std::exp2(octave);
-      const std::string name = part.name + " spheres of " + std::to_string(from).substr(0, 6) + " to " +
-                               std::to_string(2 * from).substr(0, 6) + " mm";
-      made.balls.push_back(
-          {name, std::move(balls), part.pose, heat(high == low ? 1 : double(octave - low) / (high - low)), part.name});
-    }
-    const auto tree = build<sphere>(part.spheres.spheres);
-    const auto levels = levels_of(tree.view());
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-      colour paint = heat(levels.size() == 1 ? 0 : double(k) / double(levels.size() - 1));
-      paint.alpha = 0.12f;
-      made.balls.push_back({part.name + " level " + std::to_string(k), levels[k], part.pose, paint, part.name});
-    }
-  }
-  return made;
-}
+scene packing_scene(const std::vector<scene_packing>& parts);
 
 }  // namespace clearance::io

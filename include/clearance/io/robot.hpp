@@ -3,12 +3,13 @@
 // Reads a robot from its URDF file: its parts with their meshes, and the joints that move them.
 
 #include <clearance/io/kinematics.hpp>
-#include <clearance/io/robot_link.hpp>
+#include <clearance/io/limits.hpp>
+#include <clearance/io/mesh.hpp>
+#include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <exception>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -18,123 +19,39 @@
 
 namespace clearance::io {
 
-// Joints that follow others by <mimic>, where somebody says their own values: a value that is said wins.
+enum class robot_geometry { collision, visual };
+
+struct robot_options {
+  robot_geometry geometry = robot_geometry::collision;      // a link without this kind uses the other, with a note
+  std::map<std::string, std::filesystem::path> packages{};  // the folder of package://name
+  std::vector<std::string> exclude_links{};
+  double tessellation = 1e-4;                   // metres: the error of meshes for round shapes,
+  std::uint32_t shape_triangles = 8000;         // unless a shape would need more triangles than this,
+  std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
+  bool strict = false;                          // refuse what would be noted
+  mesh_limits limits{};                         // for the description and all its meshes together
+  std::optional<gltf_axis> gltf_up{};           // without it as glTF meshes fit other geometry, else y, with a note
+};
+
+/// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, in the file's order.
+struct robot_part {
+  std::string name;
+  triangle_mesh mesh;
+  double tessellation_error = 0;  // the link's shapes reach at most this far beyond the mesh, metres; 0 for meshes
+  robot_geometry used = robot_geometry::collision;
+  std::size_t link = 0;  // its number in the kinematic tree
+};
 
 /// Those of `names` that are joints of the tree that follow others.
-inline std::vector<std::string> followers_among(const kinematic_tree& tree, const std::vector<std::string>& names) {
-  std::vector<std::string> found;
-  for (const joint& j : tree.joints())
-    if (j.follows && std::ranges::find(names, j.name) != names.end()) found.push_back(j.name);
-  return found;
-}
+std::vector<std::string> followers_among(const kinematic_tree& tree, const std::vector<std::string>& names);
 
 /// The same tree, in which these joints follow no other: each has a value of its own in a configuration, at its place
 /// in the order of joints, within its own limits. What follows them goes on to. As robot_state_publisher has it, where
 /// the published value of such a joint wins. Throws std::invalid_argument for a name of no joint that follows another.
-inline kinematic_tree freed(const kinematic_tree& tree, const std::vector<std::string>& names) {
-  if (names.empty()) return tree;
-  std::vector<joint> joints = tree.joints();
-  for (const std::string& name : names) {
-    const auto its = std::ranges::find(joints, name, &joint::name);
-    if (its == joints.end() || !its->follows)
-      throw std::invalid_argument("the robot has no joint \"" + name + "\" that follows another");
-    its->follows.reset();
-  }
-  return kinematic_tree(tree.links(), std::move(joints));
-}
+kinematic_tree freed(const kinematic_tree& tree, const std::vector<std::string>& names);
 
 /// What to tell a user of it.
-inline std::string note_on_freed(const kinematic_tree& tree, const std::string& name) {
-  const auto its = std::ranges::find(tree.joints(), name, &joint::name);
-  return "joint \"" + name + "\" has a value of its own here, which wins over what it would follow \"" +
-         its->follows->joint + "\" to by <mimic>";
-}
-
-// Which axis of a robot's glTF meshes is up. The format says y; many robots are made with z, and nothing in a file
-// tells. A link that has other geometry besides tells: only one of the two readings fits it.
-
-inline bool names_gltf(const urdf_shape& shape) {
-  const auto* mesh = std::get_if<urdf_mesh>(&shape.geometry);
-  if (!mesh) return false;
-  const std::string end = lower_case(std::filesystem::path(mesh->uri).extension().string());
-  return end == ".glb" || end == ".gltf";
-}
-inline bool name_gltf(const std::vector<urdf_shape>& shapes) { return std::ranges::any_of(shapes, names_gltf); }
-
-/// How far two boxes differ in any direction, against the size of the second.
-inline double box_difference(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
-  const double off = std::max((a.min() - b.min()).cwiseAbs().maxCoeff(), (a.max() - b.max()).cwiseAbs().maxCoeff());
-  return off / b.diagonal().norm();
-}
-
-/// Decides which axis is up, link by link.
-class gltf_judge {
- public:
-  /// Reads the geometry of links that have glTF meshes and something else to compare. What cannot be read is left out:
-  /// whoever needs it says so.
-  gltf_judge(const std::filesystem::path& urdf, const robot_options& options, const std::vector<urdf_link>& links)
-      : asked_(options.gltf_up) {
-    if (asked_) return;
-    for (const urdf_link& link : links) {
-      if (link.collision.empty() || link.visual.empty() || name_gltf(link.collision) == name_gltf(link.visual))
-        continue;
-      if (std::ranges::find(options.exclude_links, link.name) != options.exclude_links.end()) continue;
-      const bool visual = name_gltf(link.visual);
-      const auto other = box_of(urdf, options, link, visual ? link.collision : link.visual, gltf_axis::y);
-      const auto& shapes = visual ? link.visual : link.collision;
-      const auto y = box_of(urdf, options, link, shapes, gltf_axis::y),
-                 z = box_of(urdf, options, link, shapes, gltf_axis::z);
-      if (!other || !y || !z || !(other->diagonal().norm() > 0)) continue;
-      const double as_y = box_difference(*y, *other), as_z = box_difference(*z, *other);
-      // One of them has to fit, and the other clearly not: a ball or a cube tells nothing.
-      if (std::min(as_y, as_z) <= 0.1 && std::max(as_y, as_z) >= std::max(0.05, 4 * std::min(as_y, as_z)))
-        fits_[link.name] = as_y < as_z ? gltf_axis::y : gltf_axis::z;
-    }
-  }
-
-  /// The axis for a link's meshes, if it was asked for or they are named as glTF is, which gets a note.
-  std::optional<gltf_axis> of(const std::string& link, const std::vector<urdf_shape>& shapes, note_tally& notes) const {
-    if (asked_) return *asked_;
-    if (!name_gltf(shapes)) return std::nullopt;
-    const auto own = fits_.find(link);
-    const gltf_axis up = own != fits_.end() ? own->second : usual();
-    const std::string axis = up == gltf_axis::y ? "y" : "z", other = up == gltf_axis::y ? "z" : "y";
-    notes.add("has glTF meshes, which are read with " + axis + " up: " +
-                  (own != fits_.end() ? "so they fit the link's other geometry, and with " + other + " up they do not"
-                   : !fits_.empty() && agree() ? "so those of other links fit their other geometry"
-                                               : std::string("the format has it so, and no other geometry tells")) +
-                  " (--gltf-up y or z decides)",
-              "link " + io::quoted(link));
-    return up;
-  }
-
- private:
-  /// That of the links that tell, if they agree; else the format's.
-  gltf_axis usual() const { return !fits_.empty() && agree() ? fits_.begin()->second : gltf_axis::y; }
-  bool agree() const {
-    return std::ranges::all_of(fits_, [&](const auto& each) { return each.second == fits_.begin()->second; });
-  }
-
-  static std::optional<Eigen::AlignedBox3d> box_of(const std::filesystem::path& urdf, const robot_options& options,
-                                                   const urdf_link& link, const std::vector<urdf_shape>& shapes,
-                                                   gltf_axis up) {
-    try {
-      note_tally unheard;
-      robot_reader reader(urdf, options, shapes.size(), unheard);
-      robot_part part{link.name, {}, 0, robot_geometry::collision, 0};
-      Eigen::AlignedBox3d box;
-      for (const urdf_shape& shape : shapes) reader.add(part, shape, up);
-      for (const auto& t : part.mesh.triangles)
-        for (const auto v : t) box.extend(part.mesh.vertices[v]);
-      if (!box.isEmpty()) return box;
-    } catch (const std::exception&) {
-    }
-    return std::nullopt;
-  }
-
-  std::optional<gltf_axis> asked_;
-  std::map<std::string, gltf_axis> fits_;  // links whose meshes fit in one way alone
-};
+std::string note_on_freed(const kinematic_tree& tree, const std::string& name);
 
 /// The rigid parts of a robot description and how they move. The base link is at the origin.
 class robot {
@@ -152,18 +69,11 @@ class robot {
   void free_joints(const std::vector<std::string>& names) { tree_ = freed(tree_, names); }
 
   /// base-from-part for each part; see kinematic_tree::link_poses.
-  std::vector<Eigen::Isometry3d> poses(std::span<const double> configuration, joint_options options = {}) const {
-    const auto all = tree_.link_poses(configuration, options);
-    std::vector<Eigen::Isometry3d> made;
-    for (const auto& part : parts_) made.push_back(all[part.link]);
-    return made;
-  }
+  std::vector<Eigen::Isometry3d> poses(std::span<const double> configuration, joint_options options = {}) const;
 
   /// base-from-link for any link, with geometry or not.
   Eigen::Isometry3d link_pose(const std::string& link, std::span<const double> configuration,
-                              joint_options options = {}) const {
-    return tree_.link_poses(configuration, options)[tree_.link(link)];
-  }
+                              joint_options options = {}) const;
 
  private:
   std::string name_;
@@ -174,53 +84,6 @@ class robot {
 
 /// Reads a URDF file and all its geometry. A part is a link that has geometry; parts keep the file's order. Throws
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
-inline robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {}) {
-  if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
-  urdf_file file =
-      within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
-  for (const auto& name : options.exclude_links)
-    if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
-      throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
-  const auto asked = [&](const urdf_link& link) {
-    return std::ranges::find(options.exclude_links, link.name) == options.exclude_links.end() &&
-           !(link.collision.empty() && link.visual.empty());
-  };
-  const auto shapes = [&](const urdf_link& link) -> const std::vector<urdf_shape>& {
-    const bool visual = options.geometry == robot_geometry::visual;
-    return (visual ? link.visual.empty() : !link.collision.empty()) ? link.collision : link.visual;
-  };
-  std::size_t round = 0;
-  for (const urdf_link& link : file.links)
-    if (asked(link)) round += std::size_t(std::ranges::count_if(shapes(link), &urdf_shape::round));
-  std::vector<robot_part> parts;
-  robot_reader reader(urdf, options, round, file.notes);
-  std::optional<gltf_judge> judge;  // reads more than the robot needs, so only if a mesh is glTF
-  for (const urdf_link& link : file.links) {
-    if (!asked(link)) continue;
-    robot_part part{link.name, {}, 0, options.geometry, file.tree.link(link.name)};
-    if (part.used == robot_geometry::collision && link.collision.empty()) {
-      part.used = robot_geometry::visual;
-      file.notes.add("has no collision geometry, and its visual is used", "link " + io::quoted(part.name));
-    } else if (part.used == robot_geometry::visual && link.visual.empty()) {
-      part.used = robot_geometry::collision;
-      file.notes.add("has no visual geometry, and its collision is used", "link " + io::quoted(part.name));
-    }
-    if (!judge && name_gltf(shapes(link))) judge.emplace(urdf, options, file.links);
-    const std::optional<gltf_axis> up = judge ? judge->of(link.name, shapes(link), file.notes) : options.gltf_up;
-    for (const urdf_shape& shape : shapes(link)) {
-      if (shape.flat())
-        file.notes.add("has a shape without volume (a side, radius or length is 0), which is taken as 0.002 mm thick",
-                       "link " + io::quoted(part.name), shape.line);
-      within_memory(urdf.string(), [&] { reader.add(part, shape, up); });
-    }
-    parts.push_back(std::move(part));
-  }
-  if (parts.empty())
-    refuse(urdf.string(),
-           options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");
-  for (const std::string& name : reader.unused_packages())
-    file.notes.add("was given, and no mesh that was read is in it", "package " + io::quoted(name));
-  return {file.name, file.tree, std::move(parts), file.notes.sentences()};
-}
+robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {});
 
 }  // namespace clearance::io

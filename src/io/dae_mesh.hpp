@@ -2,9 +2,9 @@
 #pragma once
 // The <geometry> of a COLLADA file. Every list must have exactly as many numbers as the file says.
 
-#include <clearance/io/mesh_polygons.hpp>
-#include <clearance/io/note_tally.hpp>
-#include <clearance/io/xml.hpp>
+#include "io/mesh_polygons.hpp"
+#include "io/note_tally.hpp"
+#include "io/xml.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // COLLADA as robot descriptions use it. Anything not understood that would change the shape (skins, morphs, splines,
 // other files) is refused by name. Anything without shape (materials, lights, cameras, physics, animations) is skipped.
 
-#include <clearance/io/dae_mesh.hpp>
-#include <clearance/io/mesh_scene.hpp>
+#include "io/dae_mesh.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/mesh_scene.hpp"
 
 #include <array>
 #include <cmath>
@@ -16,6 +16,8 @@
 #include <vector>
 
 namespace clearance::io {
+
+namespace {
 
 class dae_reader {
  public:
@@ -222,10 +224,10 @@ class dae_reader {
   bool commas_ = false;                                               // a unit has a decimal comma
 };
 
-/// All meshes of a COLLADA file's scene, once for each place that the scene gives them. The file's unit counts; its up
-/// axis does not, as in ROS tools. Notes go on after the file's name.
-inline polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits,
-                             std::vector<std::string>& notes) {
+}  // namespace
+
+polygon_mesh read_dae(std::string_view bytes, const std::string& file, const mesh_limits& limits,
+                      std::vector<std::string>& notes) {
   const xml_element root = read_xml(bytes, file, limits);
   return dae_reader(root, file, limits, notes).read();
 }

@@ -2,9 +2,10 @@
 #pragma once
 // One mesh from a file's scene, which may place each of its meshes many times.
 
+#include "io/mesh_polygons.hpp"
+
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
-#include <clearance/io/mesh_polygons.hpp>
 
 #include <Eigen/Geometry>
 

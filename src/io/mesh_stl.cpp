@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // Reads the triangles of an STL file, ASCII or binary.
+
+#include "io/mesh_formats.hpp"
+#include "io/mesh_polygons.hpp"
 
 #include <clearance/io/bytes.hpp>
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
-#include <clearance/io/mesh_polygons.hpp>
 #include <clearance/io/text_file.hpp>
 
 #include <cmath>
@@ -16,7 +17,9 @@
 
 namespace clearance::io {
 
-inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
+namespace {
+
+polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
   polygon_mesh mesh;
   std::size_t at = 0;
   std::string_view line;
@@ -74,7 +77,7 @@ inline polygon_mesh read_ascii_stl(std::string_view rest, const std::string& fil
 }
 
 /// `count` triangles after the header of 84 bytes.
-inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count, const std::string& file) {
+polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count, const std::string& file) {
   polygon_mesh mesh;
   if (count > UINT32_MAX / 3) refuse(file, "has more vertices than can be counted");
   byte_reader reader(bytes.substr(84), file);
@@ -94,9 +97,9 @@ inline polygon_mesh read_binary_stl(std::string_view bytes, std::uint64_t count,
   return mesh;
 }
 
-/// All triangles of an ASCII or binary STL file, which must be complete. Less than a triangle may follow the last one
-/// of a binary file, with a note, which goes on after the file's name.
-inline polygon_mesh read_stl(std::string_view bytes, const std::string& file, std::vector<std::string>& notes) {
+}  // namespace
+
+polygon_mesh read_stl(std::string_view bytes, const std::string& file, std::vector<std::string>& notes) {
   const std::uint64_t count = bytes.size() < 84 ? 0 : byte_reader(bytes.substr(80, 4), file).take<std::uint32_t>();
   if (bytes.size() >= 84 && bytes.size() == 84 + 50 * count)  // even where the header says "solid"
     return read_binary_stl(bytes, count, file);

@@ -2,11 +2,12 @@
 #pragma once
 // Reads the meshes of a glTF file, from wherever it keeps their numbers, and judges its extensions.
 
+#include "io/gltf_json.hpp"
+#include "io/mesh_polygons.hpp"
+#include "io/note_tally.hpp"
+#include "io/uri.hpp"
+
 #include <clearance/io/bytes.hpp>
-#include <clearance/io/gltf_json.hpp>
-#include <clearance/io/mesh_polygons.hpp>
-#include <clearance/io/note_tally.hpp>
-#include <clearance/io/uri.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
-// Reads the point cloud of a PCD file, ascii, binary or compressed. What it does not understand it refuses.
+#include "io/pcd.hpp"
 
 #include <clearance/io/cloud.hpp>
 #include <clearance/io/cloud_text.hpp>
@@ -8,6 +7,7 @@
 #include <clearance/io/text_file.hpp>
 
 #include <liblzf/lzf.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -21,31 +21,12 @@
 
 namespace clearance::io {
 
+namespace {
+
 // The header of a PCD file (versions .5 to .7), read strictly: anything not understood is an error that names the line.
 
-struct pcd_field {
-  std::string name;
-  std::uint64_t size = 4;    // bytes per element
-  char type = 'F';           // F float, I signed, U unsigned
-  std::uint64_t count = 1;   // 0 for a field that takes no bytes, as drivers of lidars write for padding
-  std::uint64_t offset = 0;  // bytes before it in a record
-  std::uint64_t column = 0;  // words before it in a line
-};
-
-struct pcd_header {
-  enum class encoding { ascii, binary, binary_compressed };
-  std::vector<pcd_field> fields;
-  std::array<std::size_t, 3> xyz{};  // indices of these fields
-  std::uint64_t record_bytes = 0, record_words = 0;
-  std::uint64_t width = 0, height = 1, points = 0;
-  std::optional<io::viewpoint> viewpoint;
-  encoding data = encoding::ascii;
-  std::size_t lines = 0;       // of the header
-  bool line_end_left = false;  // the data begin with what may be the end of the header's last line
-};
-
 /// Fills in offsets and finds x, y and z. Fields and counts are bounded, so nothing overflows.
-inline void lay_out(pcd_header& header, const std::string& file) {
+void lay_out(pcd_header& header, const std::string& file) {
   std::array<int, 3> found{};
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
     auto& field = header.fields[i];
@@ -67,8 +48,6 @@ inline void lay_out(pcd_header& header, const std::string& file) {
       refuse(file, std::string("the PCD header has ") + (found[std::size_t(axis)] ? "more than one" : "no") +
                        " field " + "xyz"[axis]);
 }
-
-namespace detail {
 
 /// Reads the entries of a PCD header, one after another.
 class pcd_entries {
@@ -193,11 +172,10 @@ class pcd_entries {
   std::vector<std::string_view> values_, given_;
 };
 
-}  // namespace detail
+}  // namespace
 
-/// Takes the header off `rest`, which leaves the data.
-inline pcd_header take_pcd_header(std::string_view& rest, const std::string& file) {
-  detail::pcd_entries entries(file);
+pcd_header take_pcd_header(std::string_view& rest, const std::string& file) {
+  pcd_entries entries(file);
   const std::string_view all = rest = without_mark(rest);
   while (!rest.empty()) {
     if (!entries.read_line(take_line(rest))) continue;
@@ -210,10 +188,12 @@ inline pcd_header take_pcd_header(std::string_view& rest, const std::string& fil
   refuse(file, "the PCD header has no DATA entry (is the file cut short, or no PCD?)");
 }
 
+namespace {
+
 static_assert(std::endian::native == std::endian::little, "PCD files are little-endian; so must the reader be");
 
 /// One element of a record as a double, whatever its type.
-inline double pcd_value(const char* bytes, const pcd_field& field) {
+double pcd_value(const char* bytes, const pcd_field& field) {
   const auto as = [&]<class T>(T value) {
     std::memcpy(&value, bytes, sizeof value);
     return double(value);
@@ -243,7 +223,7 @@ inline double pcd_value(const char* bytes, const pcd_field& field) {
 }
 
 /// x, y, z of `points` records; value k of record i is at offset[k] + i * step[k]. The caller has checked the size.
-inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_header& header, bool by_field) {
+std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_header& header, bool by_field) {
   std::vector<Eigen::Vector3d> points(header.points);
   for (int axis = 0; axis < 3; ++axis) {
     const auto& field = header.fields[header.xyz[std::size_t(axis)]];
@@ -257,7 +237,7 @@ inline std::vector<Eigen::Vector3d> pcd_records(const char* data, const pcd_head
 }
 
 /// The value that a word of a field spells. Refuses a word that does not fit the field's type.
-inline double pcd_spelt(std::string_view word, const pcd_field& field, const std::string& file, std::size_t line) {
+double pcd_spelt(std::string_view word, const pcd_field& field, const std::string& file, std::size_t line) {
   const auto value = number<double>(word);
   if (!value) refuse(file, quoted(word) + " is not a number", line);
   const double most =
@@ -270,8 +250,7 @@ inline double pcd_spelt(std::string_view word, const pcd_field& field, const std
   return *value;
 }
 
-inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header,
-                                              const std::string& file) {
+std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header, const std::string& file) {
   if (header.points > rest.size() / 2 + 1)  // a record needs at least a digit and a line end
     refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
   std::vector<Eigen::Vector3d> points;
@@ -301,9 +280,9 @@ inline std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_h
   return points;
 }
 
-/// Refuses data beyond POINTS, except the zeros with which some writers fill a page, and a line end before or after
-/// them.
-inline void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
+}  // namespace
+
+void check_pcd_end(std::string_view rest, const pcd_header& header, const std::string& file) {
   if (header.line_end_left && !rest.empty())
     refuse(file,
            "some lines of the header end with \\r and the last one with \\r\\n, so it is unclear where the data begin");
@@ -318,8 +297,10 @@ inline void check_pcd_end(std::string_view rest, const pcd_header& header, const
                      " bytes follow the last record");
 }
 
-inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const pcd_header& header,
-                                                   const std::string& file, const read_limits& limits) {
+namespace {
+
+std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const pcd_header& header, const std::string& file,
+                                            const read_limits& limits) {
   if (header.points == 0) return {};
   std::uint32_t packed = 0, unpacked = 0;
   if (rest.size() < 8) refuse(file, "the file ends before the sizes of the compressed block");
@@ -347,8 +328,9 @@ inline std::vector<Eigen::Vector3d> pcd_compressed(std::string_view rest, const 
   return pcd_records(data.data(), header, true);  // stored field by field
 }
 
-/// Reads a PCD file from memory; `file` is its name in the cloud and in errors.
-inline cloud read_pcd(std::string_view bytes, const std::string& file, const read_limits& limits = {}) {
+}  // namespace
+
+cloud read_pcd(std::string_view bytes, const std::string& file, const read_limits& limits) {
   std::string_view rest = bytes;
   const pcd_header header = take_pcd_header(rest, file);
   std::vector<Eigen::Vector3d> points;
@@ -373,9 +355,7 @@ inline cloud read_pcd(std::string_view bytes, const std::string& file, const rea
   return made;
 }
 
-/// Reads a PCD file: ascii, binary or binary_compressed; its fields in any order and of any type; others are skipped.
-/// Throws std::runtime_error naming file and line, also if POINTS does not match the data.
-inline cloud load_pcd(const std::string& file, const read_limits& limits = {}) {
+cloud load_pcd(const std::string& file, const read_limits& limits) {
   return read_pcd(read_text(file, limits), file, limits);
 }
 

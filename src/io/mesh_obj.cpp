@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // The mesh readers are our own: assimp 5.2 loses triangle order among materials, refuses ".8e-1", reads "1.#IND" as 1,
 // drops what it does not understand, and hangs or crashes on damaged files. Ours also keep doubles.
 
+#include "io/mesh_formats.hpp"
+#include "io/mesh_polygons.hpp"
+
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/error.hpp>
-#include <clearance/io/mesh_polygons.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -16,8 +17,7 @@
 
 namespace clearance::io {
 
-/// Reads x, y and z from the words of a line; throws if it cannot.
-inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& file, std::size_t at) {
+Eigen::Vector3d take_vertex(std::string_view& line, const std::string& file, std::size_t at) {
   Eigen::Vector3d v;
   for (double& x : v) {
     const std::string_view word = take_word(line);
@@ -30,8 +30,7 @@ inline Eigen::Vector3d take_vertex(std::string_view& line, const std::string& fi
   return v;
 }
 
-/// The number of words left in a line, up to a comment. Throws unless all are numbers ("nan" is one).
-inline std::size_t numbers_left(std::string_view line, const std::string& file, std::size_t at) {
+std::size_t numbers_left(std::string_view line, const std::string& file, std::size_t at) {
   std::size_t count = 0;
   for (auto word = take_word(line); !word.empty() && word.front() != '#'; word = take_word(line)) {
     ++count;
@@ -43,8 +42,10 @@ inline std::size_t numbers_left(std::string_view line, const std::string& file, 
   return count;
 }
 
+namespace {
+
 /// Does this word begin an OBJ statement? Includes skin weights, which some tools add to the format.
-inline bool obj_statement(std::string_view word) {
+bool obj_statement(std::string_view word) {
   for (const std::string_view known :
        {"v",          "vt",        "vn",     "vp",     "vw",     "f",      "l",     "p",     "g",        "o",
         "s",          "usemtl",    "mtllib", "usemap", "maplib", "mg",     "bevel", "lod",   "c_interp", "d_interp",
@@ -56,7 +57,7 @@ inline bool obj_statement(std::string_view word) {
 }
 
 /// The vertex of a face's corner "1", "1/2", "1//3" or "1/2/3"; nothing if the word is none of these.
-inline std::optional<std::int64_t> obj_corner(std::string_view word) {
+std::optional<std::int64_t> obj_corner(std::string_view word) {
   std::optional<std::int64_t> vertex;
   for (int k = 0; k < 3; ++k) {  // texture and normal are skipped
     const std::size_t end = std::min(word.find('/'), word.size());
@@ -71,19 +72,19 @@ inline std::optional<std::int64_t> obj_corner(std::string_view word) {
 }
 
 /// A statement that is skipped and holds no name. If another begins in its line, a line end was lost.
-inline bool obj_of_numbers(std::string_view key) {
+bool obj_of_numbers(std::string_view key) {
   return key == "vn" || key == "vt" || key == "vp" || key == "s" || key == "l" || key == "p";
 }
 
 /// A statement of names or paths, which may end in a backslash.
-inline bool obj_of_names(std::string_view key) {
+bool obj_of_names(std::string_view key) {
   for (const std::string_view known : {"g", "o", "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj"})
     if (key == known) return true;
   return false;
 }
 
 /// A statement with geometry that this reader would skip: free-form curves and surfaces, and other files.
-inline bool obj_of_more(std::string_view key) {
+bool obj_of_more(std::string_view key) {
   for (const std::string_view known : {"surf", "curv", "curv2", "bsp", "bzp", "cdc", "cdp", "call", "csh"})
     if (key == known) return true;
   return false;
@@ -91,7 +92,7 @@ inline bool obj_of_more(std::string_view key) {
 
 /// Takes the next statement off `rest`: a line, and lines that a backslash at the end joins to it (into `joined`). A
 /// backslash joins nothing in a comment; after a name, only a line that begins no statement. `at` counts lines.
-inline std::string_view take_obj_statement(std::string_view& rest, std::string& joined, std::size_t& at) {
+std::string_view take_obj_statement(std::string_view& rest, std::string& joined, std::size_t& at) {
   std::string_view line = take_line(rest), start = line;
   ++at;
   const bool names = obj_of_names(take_word(start));
@@ -175,10 +176,9 @@ class obj_reader {
   bool any_ = false;                           // a face of three corners or more
 };
 
-/// Vertices and faces of a Wavefront OBJ file. Normals, materials, groups, lines, points, and counts before the first
-/// vertex are skipped. A face of one or two corners becomes a triangle without area. A line that is no statement may be
-/// the rest of a face, so it is an error; so are free-form surfaces.
-inline polygon_mesh read_obj(std::string_view rest, const std::string& file) {
+}  // namespace
+
+polygon_mesh read_obj(std::string_view rest, const std::string& file) {
   if (rest.find('\0') != rest.npos) refuse(file, "is not an OBJ file: it has zero bytes, so it is not plain text");
   obj_reader reader(file);
   std::string joined;

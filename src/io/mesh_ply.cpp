@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // Reads the mesh of a PLY file, faces and triangle strips.
 
-#include <clearance/io/mesh_polygons.hpp>
-#include <clearance/io/ply_values.hpp>
+#include "io/mesh_formats.hpp"
+#include "io/mesh_polygons.hpp"
+#include "io/ply_values.hpp"
 
 namespace clearance::io {
 
-namespace detail {
+namespace {
 
-inline bool names_vertices(const ply_property& p) {
+bool names_vertices(const ply_property& p) {
   return p.count && (p.name == "vertex_indices" || p.name == "vertex_index");
 }
-inline bool holds_faces(const ply_element& element) { return element.name == "face" || element.name == "tristrips"; }
+
+bool holds_faces(const ply_element& element) { return element.name == "face" || element.name == "tristrips"; }
 
 /// Refuses faces without corners, and geometry that this reader would skip.
-inline void check_ply_faces(const ply_header& header, const std::string& file) {
+void check_ply_faces(const ply_header& header, const std::string& file) {
   for (const auto& element : header.elements) {
     const auto list = std::ranges::find_if(element.properties, names_vertices);
     const auto lists = std::ranges::count_if(element.properties, names_vertices);
@@ -29,7 +30,7 @@ inline void check_ply_faces(const ply_header& header, const std::string& file) {
 
 /// Adds the faces of triangle strips; -1 ends a strip. Every second triangle of a strip is turned round. Returns false
 /// if a strip has only one or two vertices.
-inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
+bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
   std::size_t begin = 0;  // of the strip
   for (std::size_t i = 0; i <= listed.size(); ++i) {
     if (i == listed.size() || listed[i] == -1) {
@@ -44,13 +45,11 @@ inline bool add_strips(polygon_mesh& mesh, const std::vector<double>& listed) {
   return true;
 }
 
-}  // namespace detail
+}  // namespace
 
-/// Vertices, in double, and faces of a PLY file, including triangle strips. Other elements and properties are checked
-/// and skipped.
-inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file) {
+polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file) {
   const ply_header header = take_ply_header(rest, file);
-  detail::check_ply_faces(header, file);
+  check_ply_faces(header, file);
   const ply_element* vertices = header.find("vertex");
   const std::uint64_t count = vertices ? vertices->count : 0;
   if (count > UINT32_MAX) refuse(file, "has more vertices than can be counted");
@@ -63,7 +62,7 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
           refuse(file, at.record() + " has a coordinate that is not finite", at.line());
       },
       [&](const ply_element& element, const ply_property& p, const ply_values& at, const std::vector<double>& listed) {
-        if (!detail::holds_faces(element) || !detail::names_vertices(p)) return;
+        if (!holds_faces(element) || !names_vertices(p)) return;
         const bool strips = element.name == "tristrips";
         const auto too_few = [&] { refuse(file, at.record() + " has fewer than three vertices", at.line()); };
         if (listed.size() < 3) too_few();
@@ -77,7 +76,7 @@ inline polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file
           if (!strips) mesh.corners.push_back(std::uint32_t(index));
         }
         if (!strips) mesh.ends.push_back(mesh.corners.size());
-        if (strips && !detail::add_strips(mesh, listed)) too_few();
+        if (strips && !add_strips(mesh, listed)) too_few();
       });
   return mesh;
 }

@@ -40,6 +40,18 @@ constexpr std::uint32_t png_crc(std::string_view bytes) {
   return c ^ 0xFFFFFFFFu;
 }
 
+/// zlib's checksum of the unpacked data.
+constexpr std::uint32_t adler32(std::string_view bytes) {
+  std::uint32_t a = 1, b = 0;
+  while (!bytes.empty()) {
+    const std::string_view piece = bytes.substr(0, 5552);  // as many as cannot overflow
+    for (const char byte : piece) b += a += std::uint8_t(byte);
+    a %= 65521, b %= 65521;
+    bytes.remove_prefix(piece.size());
+  }
+  return b << 16 | a;
+}
+
 constexpr std::uint32_t png_number(std::string_view bytes) {
   std::uint32_t value = 0;
   for (const char byte : bytes.substr(0, 4)) value = value << 8 | std::uint8_t(byte);

@@ -2,9 +2,10 @@
 #pragma once
 // The geometry of a robot's links, one mesh for each. Boxes, balls, cylinders and capsules become triangles.
 
+#include "io/package.hpp"
+#include "io/urdf.hpp"
+
 #include <clearance/io/mesh.hpp>
-#include <clearance/io/package.hpp>
-#include <clearance/io/urdf.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
@@ -165,29 +166,6 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
   made.error = std::max(made.error, radius * (1 - std::cos(pi / n))) + 1e-15 * (radius + length);
   return made;
 }
-
-enum class robot_geometry { collision, visual };
-
-struct robot_options {
-  robot_geometry geometry = robot_geometry::collision;      // a link without this kind uses the other, with a note
-  std::map<std::string, std::filesystem::path> packages{};  // the folder of package://name
-  std::vector<std::string> exclude_links{};
-  double tessellation = 1e-4;                   // metres: the error of meshes for round shapes,
-  std::uint32_t shape_triangles = 8000;         // unless a shape would need more triangles than this,
-  std::uint32_t all_shape_triangles = 400'000;  // or more than its share of these
-  bool strict = false;                          // refuse what would be noted
-  mesh_limits limits{};                         // for the description and all its meshes together
-  std::optional<gltf_axis> gltf_up{};           // without it as glTF meshes fit other geometry, else y, with a note
-};
-
-/// One link that has geometry: all its meshes and shapes as one mesh in the link's frame, in the file's order.
-struct robot_part {
-  std::string name;
-  triangle_mesh mesh;
-  double tessellation_error = 0;  // the link's shapes reach at most this far beyond the mesh, metres; 0 for meshes
-  robot_geometry used = robot_geometry::collision;
-  std::size_t link = 0;  // its number in the kinematic tree
-};
 
 /// Reads the links of one robot, which share its limits.
 class robot_reader {

@@ -2,9 +2,10 @@
 #pragma once
 // Finds the files that a URDF names: in ROS packages, by their paths, or where another machine's paths would be here.
 
+#include "io/uri.hpp"
+#include "io/xml.hpp"
+
 #include <clearance/io/error.hpp>
-#include <clearance/io/uri.hpp>
-#include <clearance/io/xml.hpp>
 
 #include <algorithm>
 #include <cstdlib>

@@ -3,9 +3,9 @@
 // Decides what may stand where in a URDF file, and what happens to everything else. What may change the answer is
 // refused; what cannot is noted.
 
-#include <clearance/io/near_word.hpp>
-#include <clearance/io/note_tally.hpp>
-#include <clearance/io/xml.hpp>
+#include "io/near_word.hpp"
+#include "io/note_tally.hpp"
+#include "io/xml.hpp"
 
 #include <optional>
 #include <string>

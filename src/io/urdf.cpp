@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
-// A URDF reader that takes every number or refuses the file. urdfdom instead logs what it cannot read, returns the link
-// without it, and sorts links and joints by name.
+#include "io/urdf.hpp"
+
+#include "io/near_word.hpp"
+#include "io/note_tally.hpp"
+#include "io/urdf_words.hpp"
+#include "io/xml.hpp"
 
 #include <clearance/io/kinematics.hpp>
-#include <clearance/io/near_word.hpp>
-#include <clearance/io/note_tally.hpp>
-#include <clearance/io/urdf_words.hpp>
-#include <clearance/io/xml.hpp>
 
 #include <Eigen/Geometry>
 
@@ -23,53 +22,10 @@
 
 namespace clearance::io {
 
-struct urdf_box {
-  Eigen::Vector3d size;
-};
-struct urdf_sphere {
-  double radius;
-};
-struct urdf_cylinder {
-  double radius, length;
-};
-/// A cylinder along z with half a ball on either end; `length` does not include them.
-struct urdf_capsule {
-  double radius, length;
-};
-struct urdf_mesh {
-  std::string uri;
-  Eigen::Vector3d scale;
-};
-using urdf_geometry = std::variant<urdf_box, urdf_sphere, urdf_cylinder, urdf_capsule, urdf_mesh>;
-
-/// One visual or collision of a link.
-struct urdf_shape {
-  urdf_geometry geometry;
-  Eigen::Isometry3d origin;  // link-from-shape
-  std::size_t line;          // where its geometry is in the file
-
-  /// Is it a point, a segment or a plate? Then a side, radius or length is 0.
-  bool flat() const {
-    if (const auto* box = std::get_if<urdf_box>(&geometry)) return (box->size.array() == 0).any();
-    if (const auto* sphere = std::get_if<urdf_sphere>(&geometry)) return sphere->radius == 0;
-    if (const auto* cylinder = std::get_if<urdf_cylinder>(&geometry))
-      return cylinder->radius == 0 || cylinder->length == 0;
-    const auto* capsule = std::get_if<urdf_capsule>(&geometry);
-    return capsule && capsule->radius == 0;
-  }
-  /// Does it become triangles that only approximate it?
-  bool round() const {
-    return !std::holds_alternative<urdf_box>(geometry) && !std::holds_alternative<urdf_mesh>(geometry);
-  }
-};
-
-struct urdf_link {
-  std::string name;
-  std::vector<urdf_shape> collision, visual;
-};
+namespace {
 
 /// A name that can be shown: at most 100 bytes, without control characters.
-inline std::string urdf_name(const xml_place& at, std::string_view attribute = "name") {
+std::string urdf_name(const xml_place& at, std::string_view attribute = "name") {
   const std::string& name = at.attribute(attribute);
   if (name.empty()) at.refuse("has an empty " + std::string(attribute));
   if (name.size() > 100) at.refuse("has a name of more than 100 bytes: " + io::quoted(name));
@@ -81,7 +37,7 @@ inline std::string urdf_name(const xml_place& at, std::string_view attribute = "
 }
 
 /// The pose in <origin>: fixed axes, roll about x first, then pitch about y, then yaw about z.
-inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
+Eigen::Isometry3d urdf_origin(const xml_place& around) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const xml_element* element = around.child("origin");
   if (!element) return pose;
@@ -100,7 +56,7 @@ inline Eigen::Isometry3d urdf_origin(const xml_place& around) {
   return pose;
 }
 
-inline urdf_geometry read_urdf_geometry(const xml_place& around) {
+urdf_geometry read_urdf_geometry(const xml_place& around) {
   const xml_element* only = nullptr;
   std::size_t count = 0;
   for (const auto& child : around.element.children)
@@ -138,7 +94,7 @@ inline urdf_geometry read_urdf_geometry(const xml_place& around) {
   return mesh;
 }
 
-inline urdf_link read_urdf_link(const xml_place& at) {
+urdf_link read_urdf_link(const xml_place& at) {
   urdf_link made{urdf_name(at), {}, {}};
   const std::string owner = "link " + io::quoted(made.name);
   const xml_place link{at.element, at.file, owner};
@@ -164,7 +120,7 @@ struct urdf_joint {
   std::string who() const { return "joint " + io::quoted(made.name); }
 };
 
-inline urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
+urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   urdf_joint read{.made = {}, .line = at.element.line};
   joint& made = read.made;
   made.name = urdf_name(at);
@@ -221,7 +177,7 @@ inline urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
 
 /// If a joint follows a joint of another file, this file does not say where it is, so it takes a value of its own. A
 /// name that nearly matches a joint here is a misspelling, and refused.
-inline void free_followers(std::vector<urdf_joint>& joints, const std::string& file, note_tally& notes) {
+void free_followers(std::vector<urdf_joint>& joints, const std::string& file, note_tally& notes) {
   constexpr std::size_t most = 1000;  // because each is compared with every joint
   std::map<std::string_view, const urdf_joint*> named;
   for (const urdf_joint& each : joints) named.emplace(each.made.name, &each);
@@ -248,8 +204,8 @@ inline void free_followers(std::vector<urdf_joint>& joints, const std::string& f
 }
 
 /// Simulators have a link "world" that files need not have; other links must be there.
-inline void add_world(std::vector<std::string>& links, const std::vector<urdf_joint>& joints, const std::string& file,
-                      note_tally& notes) {
+void add_world(std::vector<std::string>& links, const std::vector<urdf_joint>& joints, const std::string& file,
+               note_tally& notes) {
   std::set<std::string> known(links.begin(), links.end());
   for (const urdf_joint& each : joints)
     for (const std::string* name : {&each.made.parent, &each.made.child}) {
@@ -263,7 +219,7 @@ inline void add_world(std::vector<std::string>& links, const std::vector<urdf_jo
 }
 
 /// Is its parent a root without shapes, from which nothing else hangs?
-inline bool carries_all(const joint& by, const std::vector<urdf_joint>& joints, const std::vector<urdf_link>& links) {
+bool carries_all(const joint& by, const std::vector<urdf_joint>& joints, const std::vector<urdf_link>& links) {
   for (const urdf_joint& each : joints)
     if (each.made.child == by.parent || (&each.made != &by && each.made.parent == by.parent)) return false;
   const auto parent = std::ranges::find(links, by.parent, &urdf_link::name);
@@ -272,7 +228,7 @@ inline bool carries_all(const joint& by, const std::vector<urdf_joint>& joints, 
 
 /// One of the joints that stand for a planar or floating one, without its links: "x", "y" and "z" shift, "roll",
 /// "pitch" and "yaw" turn about x, y and z, as rpy does if yaw comes first.
-inline joint step_of(const joint& whole, const std::string& name) {
+joint step_of(const joint& whole, const std::string& name) {
   joint made;
   made.name = whole.name + "/" + name;
   made.kind = name.size() == 1 ? joint_kind::prismatic : joint_kind::continuous;
@@ -285,8 +241,8 @@ inline joint step_of(const joint& whole, const std::string& name) {
 
 /// The joints of one value that stand for all. A planar or floating joint that alone carries the robot is the base
 /// pose; any other becomes a chain of joints NAME/x, ..., whose links, named so too, are added.
-inline std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::vector<urdf_link>& shapes,
-                                       std::vector<std::string>& links, const std::string& file, note_tally& notes) {
+std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::vector<urdf_link>& shapes,
+                                std::vector<std::string>& links, const std::string& file, note_tally& notes) {
   using freedom = urdf_joint::freedom;
   std::vector<joint> made;
   for (const urdf_joint& each : read) {
@@ -334,24 +290,15 @@ inline std::vector<joint> split_joints(const std::vector<urdf_joint>& read, cons
   return made;
 }
 
-/// A file's links in its order, its joints as a tree, and notes about what was skipped.
-struct urdf_file {
-  std::string name;
-  std::vector<urdf_link> links;
-  kinematic_tree tree;
-  note_tally notes;
-};
-
 /// Where the XML declaration begins, if blanks precede it; else 0. XML allows none, but people leave empty lines.
-inline std::size_t declaration_after_blanks(std::string_view text) {
+std::size_t declaration_after_blanks(std::string_view text) {
   const std::size_t mark = text.size() - without_mark(text).size(), begin = text.find_first_not_of(" \t\r\n", mark);
   return begin != text.npos && begin > mark && text.substr(begin).starts_with("<?xml ") ? begin : 0;
 }
 
-/// Reads a URDF file; links and joints keep its order. Throws std::runtime_error with the file's name, the line, and
-/// the link or joint, if something that decides where geometry is cannot be read, is missing or is unknown. `strict`
-/// refuses what would be noted.
-inline urdf_file read_urdf(const std::string& file, const mesh_limits& limits = {}, bool strict = false) {
+}  // namespace
+
+urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool strict) {
   const std::string text = read_bytes(file, {.piped = limits.bytes});
   if (text.size() > limits.bytes)
     refuse(file, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");

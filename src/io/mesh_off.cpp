@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // Reads the mesh of an OFF file.
 
-#include <clearance/io/mesh_obj.hpp>
+#include "io/mesh_formats.hpp"
+
+#include <clearance/io/cloud_text.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,8 @@
 #include <string_view>
 
 namespace clearance::io {
+
+namespace {
 
 /// The lines of an OFF file, without comments and blank lines.
 struct off_lines {
@@ -39,7 +42,7 @@ struct off_lines {
 };
 
 /// The word before OFF: nothing, C, N or ST. `line` becomes what follows OFF.
-inline std::string_view take_off_keyword(off_lines& lines, std::string_view& line) {
+std::string_view take_off_keyword(off_lines& lines, std::string_view& line) {
   line = lines.next("header");
   const std::size_t keyword = line.find("OFF");
   const std::string_view prefix = line.substr(0, keyword);
@@ -49,7 +52,7 @@ inline std::string_view take_off_keyword(off_lines& lines, std::string_view& lin
   return prefix;
 }
 
-inline void take_off_vertices(off_lines& lines, std::string_view prefix, std::uint64_t count, polygon_mesh& mesh) {
+void take_off_vertices(off_lines& lines, std::string_view prefix, std::uint64_t count, polygon_mesh& mesh) {
   std::size_t least = prefix == "ST" ? 2 : prefix.empty() ? 0 : 3, most = prefix == "C" ? 4 : least;
   for (std::uint64_t i = 0; i < count; ++i) {
     std::string_view line = lines.next("last vertex");
@@ -61,7 +64,7 @@ inline void take_off_vertices(off_lines& lines, std::string_view prefix, std::ui
   }
 }
 
-inline void take_off_face(off_lines& lines, polygon_mesh& mesh) {
+void take_off_face(off_lines& lines, polygon_mesh& mesh) {
   std::string_view line = lines.next("last face");
   const std::uint64_t corners = lines.count(line, "corners"), vertices = mesh.vertices.size();
   if (corners < 3 || corners > line.size()) lines.refuse("a face of " + std::to_string(corners) + " corners");
@@ -76,9 +79,9 @@ inline void take_off_face(off_lines& lines, polygon_mesh& mesh) {
   mesh.ends.push_back(mesh.corners.size());
 }
 
-/// Vertices and faces of an OFF file. Colours (COFF, and of faces), normals (NOFF) and texture coordinates (STOFF) are
-/// skipped. A line with another number of numbers may be two lines in one, so it is refused.
-inline polygon_mesh read_off(std::string_view rest, const std::string& file) {
+}  // namespace
+
+polygon_mesh read_off(std::string_view rest, const std::string& file) {
   off_lines lines{rest, file};
   std::string_view line;
   const std::string_view prefix = take_off_keyword(lines, line);

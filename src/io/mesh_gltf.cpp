@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
 // glTF as robot descriptions use it, as text (.gltf) and binary (.glb). Anything not understood that would change the
 // shape (skins, morph targets, sparse or compressed data) is refused by name; materials, cameras and animations are
 // skipped.
 
-#include <clearance/io/gltf_data.hpp>
-#include <clearance/io/mesh_scene.hpp>
+#include "io/gltf_data.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/mesh_scene.hpp"
 
 #include <Eigen/Geometry>
 
@@ -15,20 +15,10 @@
 
 namespace clearance::io {
 
-/// Which axis of a glTF file is up in the robot's frame. The format says y; many robots' files are made with z.
-enum class gltf_axis { y, z };
-
-/// Says how a glTF file is read if nobody said how; it goes on after the file's name.
-inline constexpr const char* gltf_note =
-    "is glTF, and read with y up, as the format has it; --gltf-up z (gltf_up) is for one that was made with z up";
-
-/// The position that robots, whose z is up, give to a position of glTF.
-inline Eigen::Vector3d from_gltf(const Eigen::Vector3d& p, gltf_axis up) {
-  return up == gltf_axis::z ? p : Eigen::Vector3d(p.x(), -p.z(), p.y());
-}
+namespace {
 
 /// parent-from-node: a matrix, or translation, rotation and scale.
-inline Eigen::Affine3d gltf_transform(const gltf_value& node) {
+Eigen::Affine3d gltf_transform(const gltf_value& node) {
   Eigen::Affine3d made = Eigen::Affine3d::Identity();
   if (node.has("matrix")) {
     if (node.has("translation") || node.has("rotation") || node.has("scale"))
@@ -56,23 +46,22 @@ inline Eigen::Affine3d gltf_transform(const gltf_value& node) {
 }
 
 /// glTF 2 is read. Files of other versions have another structure.
-inline void check_gltf_version(const gltf_value& root) {
+void check_gltf_version(const gltf_value& root) {
   if (!root.has("asset") || !root["asset"].has("version")) return;
   const gltf_value version = root["asset"]["version"];
   if (!version.value.is_string() || !version.value.get<std::string>().starts_with("2."))
     version.refuse("is " + version.value.dump() + ", and glTF 2 is read");
 }
 
-inline void check_gltf_node(const gltf_value& node) {
+void check_gltf_node(const gltf_value& node) {
   node.only({"camera", "children", "skin", "matrix", "mesh", "rotation", "scale", "translation", "weights", "name",
              "extensions", "extras"});
 }
 
-/// All meshes of a glTF file's scene, once for each place that the scene gives them, as the file has them: unturned.
-/// `text` is its JSON. Notes go on after the file's name.
-inline polygon_mesh read_gltf(std::string_view text, std::optional<std::string_view> chunk, const std::string& file,
-                              const mesh_limits& limits, std::vector<std::string>& notes,
-                              std::uint64_t& bytes_of_others) {
+}  // namespace
+
+polygon_mesh read_gltf(std::string_view text, std::optional<std::string_view> chunk, const std::string& file,
+                       const mesh_limits& limits, std::vector<std::string>& notes, std::uint64_t& bytes_of_others) {
   const nlohmann::json json = read_json(text, file, limits);
   const gltf_value root{json, file, ""};
   if (!json.is_object()) root.refuse("is no object");
