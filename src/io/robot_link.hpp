@@ -6,6 +6,7 @@
 #include "io/urdf.hpp"
 
 #include <clearance/io/mesh.hpp>
+#include <clearance/io/robot.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
