@@ -36,8 +36,8 @@ if(NOT CPACK_DEBIAN_PACKAGE_MAINTAINER)
   set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The clearance authors <clearance@example.org>")
 endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "distance of a robot from what its depth sensor sees")
-set(CPACK_DEBIAN_DEV_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION_SUMMARY}
-clearance takes a robot's parts and a raw point cloud or depth image, new in
+set(CPACK_DEBIAN_DEV_DESCRIPTION
+"clearance takes a robot's parts and a raw point cloud or depth image, new in
 every frame, and gives the minimum distance with its witness and an interval
 that certainly contains the true one, on the CPU and on an NVIDIA GPU.
 .
@@ -50,9 +50,9 @@ if(TARGET clearance_io)
   set(CPACK_DEBIAN_IO_PACKAGE_NAME libclearance-io-dev)
   set(CPACK_DEBIAN_IO_PACKAGE_DEPENDS
       "clearance-dev (= ${PROJECT_VERSION}-1), libexpat1-dev, libyaml-cpp-dev, liblzf-dev, libtbb-dev")
-  set(CPACK_DEBIAN_IO_DESCRIPTION "reads and writes robots, meshes, spheres, clouds and images for clearance
-The compiled component io of clearance, and the files for CMake's
-find_package(clearance COMPONENTS io).")
+  set(CPACK_DEBIAN_IO_DESCRIPTION
+"This package has the compiled component io of clearance, which reads and
+writes files of robots, meshes, spheres, clouds and images.")
 endif()
 
 # Debian's files in /usr/share/doc, besides those of every installation.
