@@ -162,16 +162,20 @@ namespace clearance::io::stb {
 
 namespace clearance::io {
 
+int png_unpack(std::string_view packed, std::string& raw) {
+  try {
+    return stb::stbi_zlib_decode_buffer(raw.data(), int(raw.size()), packed.data(), int(packed.size()));
+  } catch (const std::logic_error&) {  // STBI_ASSERT
+    return -1;
+  }
+}
+
 depth_frame read_png(std::string_view bytes, const std::string& file, const read_limits& limits) {
   const png_image image = check_depth_png(bytes, file, limits);
   const std::size_t size = png_raw_bytes(image);
   if (size > INT_MAX || image.packed.size() > INT_MAX) refuse(file, "is larger than 2 GiB");
   std::string raw(size, '\0');  // no more, whatever the data unfold to
-  int unpacked = -1;
-  try {
-    unpacked = stb::stbi_zlib_decode_buffer(raw.data(), int(size), image.packed.data(), int(image.packed.size()));
-  } catch (const std::logic_error&) {  // STBI_ASSERT
-  }
+  const int unpacked = png_unpack(image.packed, raw);
   if (unpacked < 0 || std::size_t(unpacked) != size)
     refuse(file, "the PNG image is damaged (its data are not those of " + std::to_string(image.width) + "x" +
                      std::to_string(image.height) + " pixels)");

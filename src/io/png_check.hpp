@@ -121,4 +121,8 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
   return image;
 }
 
+/// Unpacks a zlib stream into `raw`, whose size is the most that there may be. Returns the bytes, or -1 if it is
+/// damaged.
+int png_unpack(std::string_view packed, std::string& raw);
+
 }  // namespace clearance::io

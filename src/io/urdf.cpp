@@ -290,13 +290,12 @@ std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::
   return made;
 }
 
-/// Where the XML declaration begins, if blanks precede it; else 0. XML allows none, but people leave empty lines.
+}  // namespace
+
 std::size_t declaration_after_blanks(std::string_view text) {
   const std::size_t mark = text.size() - without_mark(text).size(), begin = text.find_first_not_of(" \t\r\n", mark);
   return begin != text.npos && begin > mark && text.substr(begin).starts_with("<?xml ") ? begin : 0;
 }
-
-}  // namespace
 
 urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool strict) {
   const std::string text = read_bytes(file, {.piped = limits.bytes});

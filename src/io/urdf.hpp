@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -73,6 +74,9 @@ struct urdf_file {
   kinematic_tree tree;
   note_tally notes;
 };
+
+/// Where the XML declaration begins, if blanks precede it; else 0. XML allows none, but people leave empty lines.
+std::size_t declaration_after_blanks(std::string_view text);
 
 /// Reads a URDF file; links and joints keep its order. Throws std::runtime_error with the file's name, the line, and
 /// the link or joint, if something that decides where geometry is cannot be read, is missing or is unknown. `strict`

@@ -33,7 +33,7 @@ fuzz::bytes damage_png(fuzz::bytes input, std::mt19937&) {
     }
     if (sums || last == 0) continue;
     std::string raw(1 << 16, '\0');
-    const int count = io::stb::stbi_zlib_decode_buffer(raw.data(), int(raw.size()), packed.data(), int(packed.size()));
+    const int count = io::png_unpack(packed, raw);
     if (count < 0) continue;
     const std::size_t end = last + 8 + io::png_number(std::string_view(made).substr(last));
     made.replace(end - 4, 4, big_endian(io::adler32(std::string_view(raw).substr(0, std::size_t(count)))));

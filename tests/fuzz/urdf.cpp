@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/urdf.hpp"
 #include "fuzz/fuzz.hpp"
 #include "io/xml_text.hpp"
 
