@@ -83,6 +83,7 @@ class Watch:
         nearest=0.0,
         farthest=math.inf,
         zero_is_missing=False,
+        cloud_scale=1.0,
         camera_info=None,
         check=False,
         each=None,
@@ -101,10 +102,13 @@ class Watch:
             raise ValueError("a check by NumPy needs a robot of spheres, and the nearest of all points")
         if not max_age >= 0:
             raise ValueError(f"max_age is {max_age} s; it is 0 or more")
+        if not 1e-9 <= cloud_scale <= 1e9:
+            raise ValueError(f"cloud_scale is {cloud_scale} metres per unit; it is from 1e-9 to 1e9")
         self.ask, self.device = _core.Query(robot, self.question, device), device
         self.ask_certain = None  # made when it is first needed
         self.base_frame, self.max_age, self.check = base_frame, max_age, check
         self.nearest, self.farthest, self.zero_is_missing = nearest, farthest, zero_is_missing
+        self.cloud_scale, self.sized = cloud_scale, set()
         self.fixed, self.mimics = words.by_name(robot, joints or {}), robot.mimics
         if strange := sorted(set(self.fixed) - set(robot.joints) - set(self.mimics)):
             raise ValueError(f"the robot has no joint {strange[0]!r} (it has: {', '.join(robot.joints) or 'none'})")
@@ -187,6 +191,21 @@ class Watch:
             self.each(row, sight)
         return row
 
+    def _judge_unit(self, row, kind, poses, seen):
+        """Says where a unit is likely to be another one than metres."""
+        hint = "(cloud_scale)" if kind == recordings.CLOUD else "(16UC1 is in millimetres, 32FC1 in metres)"
+        if math.isfinite(row.distance) and row.distance > 50:
+            row.say(f"no point is within 50 m of the robot: are they in metres? {hint}")
+        if kind != recordings.CLOUD or row.topic in self.sized or row.valid < 2:
+            return
+        self.sized.add(row.topic)  # once: it takes as long as the answer
+        robot = np.linalg.norm(np.ptp(poses[:, :3, 3], axis=0))
+        local = scenes.as_points(seen["points"])
+        local = local[np.isfinite(local).all(1)]
+        cloud = np.linalg.norm(np.ptp(local, axis=0)) if len(local) else 0.0
+        if cloud > 0 and robot > 100 * cloud:
+            row.say(f"the robot is {robot / cloud:.3g} times as large as the cloud: what is its unit? {hint}")
+
     def _base(self):
         if self.base_frame is None:
             for name in self.transforms.frames:
@@ -250,6 +269,8 @@ class Watch:
         short_by = None
         if kind == recordings.CLOUD:
             points = recordings.cloud(message)
+            if self.cloud_scale != 1:
+                points = scenes.as_points(points) * np.float64(self.cloud_scale)
         else:
             if kind == recordings.COMPRESSED:
                 image, short_by = recordings.compressed_depth(message)
@@ -277,6 +298,7 @@ class Watch:
             seen = {"depth": image, "camera_pose": where, **lens}
         result = self.ask(clouds=[cloud], poses=poses)
         self._write(row, result)
+        self._judge_unit(row, kind, poses, seen)
         if short_by is not None:
             # Of depths that may be less, those that may be within `farthest` count.
             near = np.where(image - short_by > self.farthest, np.float32(np.nan), image)
@@ -359,6 +381,7 @@ def play(
     nearest=0.0,
     farthest=math.inf,
     zero_is_missing=False,
+    cloud_scale=1.0,
     each=None,
     only=None,
 ):
@@ -374,7 +397,7 @@ def play(
     names, or the values of all. max_age: seconds. Joints and transforms are interpolated at a frame's stamp. What is farther from it is not
     used. camera_info: the topic of the CameraInfo, or {image's topic: topic}; `camera_info` beside the image, unless
     given. nearest, farthest: metres from the sensor between which points count. zero_is_missing: a point at the sensor
-    is none. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
+    is none. cloud_scale: metres per unit of the clouds. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
     each: is called with each row that was asked and its Sight, whose scene() can be drawn. only: {(stamp_ns, topic)} of
     the frames that are asked; the rows of others are "unknown".
 
@@ -393,6 +416,7 @@ def play(
         nearest=nearest,
         farthest=farthest,
         zero_is_missing=zero_is_missing,
+        cloud_scale=cloud_scale,
         camera_info=camera_info,
         check=check,
         each=each,

@@ -377,6 +377,33 @@ def test_a_cloud_without_valid_points_is_no_data(robot, tmp_path):
     assert (row.seen, row.valid, row.dropped) == (9, 0, {"not_finite": 9})
 
 
+def test_clouds_in_other_units_are_hinted_at_and_scaled(robot, urdf, tmp_path, capsys):
+    def with_clouds(name, scale):
+        messages = [each for each in drive(2) if each[0] != "/lidar/points"]
+        for k in range(2):
+            stamp = START + (7 + 50 * k) * MS
+            messages.append(("/lidar/points", stamp + 60 * MS, cloud_message(stamp, "lidar", scene(stamp) * scale)))
+        return bag(tmp_path / name, messages)
+
+    metres = list(playing.play(with_clouds("metres", 1), robot, topics="/lidar/points"))
+    assert [row.note for row in metres] == ["", ""]
+    thousand = with_clouds("millimetres", 1000)
+    for row, right in zip(playing.play(thousand, robot, topics="/lidar/points"), metres, strict=True):
+        assert row.distance > 50 and "no point is within 50 m of the robot: are they in metres? (cloud_scale)" in row.note
+    scaled = playing.play(thousand, robot, topics="/lidar/points", cloud_scale=0.001, check=True)
+    for row, right in zip(scaled, metres, strict=True):
+        assert row.note == "" and row.state == right.state and row.point == right.point
+        assert row.distance == pytest.approx(right.distance, abs=1e-5)
+    tiny = list(playing.play(with_clouds("kilometres", 1e-3), robot, topics="/lidar/points"))
+    assert "as large as the cloud: what is its unit? (cloud_scale)" in tiny[0].note and tiny[1].note == ""
+    arguments = ("--robot", urdf, "--spheres", 64, "--topic", "/lidar/points", "--cloud-scale")
+    status, out, _ = played(capsys, thousand, *arguments, 0.001)
+    assert status == 0 and "50 m" not in out
+    for scale in (0, -1, "inf", "nan"):
+        status, _, err = played(capsys, thousand, *arguments[:-1], f"--cloud-scale={scale}")
+        assert status == 1 and "metres per unit; it is from 1e-9 to 1e9" in err
+
+
 def test_a_truncated_recording_gives_its_rows_and_a_sentence(robot, tmp_path):
     messages = drive(60)
     file = write_bag(tmp_path / "bag", sorted(messages, key=lambda each: each[1]))

@@ -801,6 +801,15 @@ def test_view_shows_a_robot_and_a_cloud_of_files(tmp_path, capsys):
     assert picture.stat().st_size > 2000
 
 
+def test_view_hints_at_clouds_in_other_units_and_scales_them(tmp_path, capsys):
+    np.save(tmp_path / "c.npy", np.array([[900, 0, 400], [2000, 2000, 2000]], np.float32))
+    words = ["view", demo.write_urdf(tmp_path), "--cloud", str(tmp_path / "c.npy"), "--picture", str(tmp_path / "v.png")]
+    assert main(words) == 0
+    assert "note: no point is within 50 m of the robot: are they in metres? (--cloud-scale)" in capsys.readouterr().out
+    assert main([*words, "--cloud-scale", "0.001", "--margin", "5"]) == 2
+    assert "within 50 m" not in capsys.readouterr().out
+
+
 def test_view_takes_a_joint_that_follows_another_by_either_option(tmp_path, monkeypatch, capsys):
     from test_playing import GRIPPER
 
@@ -847,6 +856,8 @@ def test_view_takes_a_joint_that_follows_another_by_either_option(tmp_path, monk
         (["--picture", "a.gif"], ".png"),
         (["--joints", "elbow=99"], "elbow"),
         (["--spheres", "9", "--model", "triangles"], "--spheres is for"),
+        (["ARM", "--depth", "d.npy", "--cloud-scale", "0.1"], "--cloud-scale is for --cloud"),
+        (["ARM", "--cloud", "one.npy", "--cloud-scale", "0"], "metres per unit; it is from 1e-9 to 1e9"),
         (["ARM", "--cloud", "one.npy", "--pose", "0,0,0,0,0,0,2"], "quaternion has the length 2"),
     ],
 )

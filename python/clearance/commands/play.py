@@ -66,6 +66,9 @@ def add_frames(parser):
     parser.add_argument(
         "--farthest", type=float, default=float("inf"), metavar="METRES", help="farther points do not count"
     )
+    parser.add_argument(
+        "--cloud-scale", type=float, metavar="METRES", help="per unit of the clouds (default: 1)"
+    )
     parser.add_argument("--zero-is-missing", action="store_true", help="a point at the sensor is no point")
 
 
@@ -91,6 +94,7 @@ def frames(asked):
         "nearest": asked.nearest,
         "farthest": asked.farthest,
         "zero_is_missing": asked.zero_is_missing,
+        **({} if asked.cloud_scale is None else {"cloud_scale": asked.cloud_scale}),
     }
 
 

@@ -28,6 +28,7 @@ def add(parser):
     parser.add_argument(
         "--depth-scale", type=float, help="metres per unit of a depth image (default: 0.001; 1 for float32)"
     )
+    parser.add_argument("--cloud-scale", type=float, metavar="METRES", help="per unit of the clouds (default: 1)")
     parser.add_argument(
         "--pose",
         metavar="X,Y,Z,QX,QY,QZ,QW",
@@ -81,12 +82,23 @@ def robot_maker(asked, file):
     return make, asked.model or ("spheres" if asked.spheres is not None else "triangles")
 
 
+def scaled(points, scale):
+    """Points in metres, whose file has other units."""
+    from clearance.seeing import scenes
+
+    if not 1e-9 <= scale <= 1e9:
+        raise ValueError(f"--cloud-scale is {scale} metres per unit; it is from 1e-9 to 1e9")
+    return scenes.as_points(points) * np.float64(scale)
+
+
 def seen_of(asked, say):
     """What the sensor sees: the arguments of a call."""
     from clearance.seeing import files
 
     if asked.cloud and asked.depth:
         raise ValueError("give --cloud or --depth, not both")
+    if asked.cloud_scale is not None and not asked.cloud:
+        raise ValueError("--cloud-scale is for --cloud")
     if asked.depth:
         if asked.intrinsics is None:
             raise ValueError("--depth needs --intrinsics FX,FY,CX,CY")
@@ -105,7 +117,7 @@ def seen_of(asked, say):
         points, notes = files.read_cloud(file)
         for note in notes:
             say(note)
-        read.append(points)
+        read.append(points if asked.cloud_scale is None else scaled(points, asked.cloud_scale))
     points = (
         read[0] if len(read) == 1 else np.concatenate([p.reshape(-1, 3).astype(np.result_type(*read)) for p in read])
     )
@@ -161,13 +173,16 @@ def run(asked):
             return 0
         made = seeing.scene(robot, **what)
         print(made.title)
+        least = seeing.least_of(made.result)
+        if least.state.name != "no_data" and least.distance > 50:
+            option = "--cloud-scale" if asked.cloud else "--depth-scale"
+            say(f"no point is within 50 m of the robot: are they in metres? ({option})")
         written = []
         if asked.rerun:
             written.append(seeing.show(made, rerun=asked.rerun))
         if asked.picture or not asked.rerun:
             written.append(seeing.picture(made, output=asked.picture or "clearance.png"))
         print("written: " + ", ".join(written))
-    least = seeing.least_of(made.result)
     return (
         3 if least.state.name == "no_data" else 2 if asked.margin is not None and not least.lower > asked.margin else 0
     )
