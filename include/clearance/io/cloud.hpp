@@ -3,6 +3,7 @@
 // A point cloud in memory that keeps its file's numbering and precision.
 
 #include <clearance/frames/clouds.hpp>
+#include <clearance/io/same_eigen.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/strided_points.hpp>
 

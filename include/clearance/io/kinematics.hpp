@@ -2,6 +2,8 @@
 #pragma once
 // The joints of a robot, and where they put its links, in double. What rounding would spoil is refused.
 
+#include <clearance/io/same_eigen.hpp>
+
 #include <Eigen/Geometry>
 
 #include <cstddef>

@@ -3,6 +3,7 @@
 // Reads a mesh file of any format that robots use.
 
 #include <clearance/io/limits.hpp>
+#include <clearance/io/same_eigen.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <cstdint>

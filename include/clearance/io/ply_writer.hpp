@@ -2,6 +2,8 @@
 #pragma once
 // Points with numbers of your own, in a form that every viewer of PLY files shows.
 
+#include <clearance/io/same_eigen.hpp>
+
 #include <Eigen/Core>
 
 #include <cstddef>

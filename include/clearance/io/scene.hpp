@@ -3,6 +3,7 @@
 // A picture of a query for any glTF viewer: robot, points, witness.
 
 #include <clearance/ground/math.hpp>
+#include <clearance/io/same_eigen.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>
