@@ -42,6 +42,8 @@ struct robot_part {
   std::size_t link = 0;  // its number in the kinematic tree
 };
 
+// Joints that follow others by <mimic>, where somebody says their own values: a value that is said wins.
+
 /// Those of `names` that are joints of the tree that follow others.
 std::vector<std::string> followers_among(const kinematic_tree& tree, const std::vector<std::string>& names);
 
