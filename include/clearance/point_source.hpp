@@ -153,6 +153,26 @@ CLEARANCE_HD real beyond_range(const S& s, std::size_t i, vec3 p) {
     return infinity;
 }
 
+/// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor. From the optional
+/// member `vec3 sensor() const`, a filter, or the source that it views.
+template <point_source S>
+CLEARANCE_HD vec3 sensor_of(const S& s) {
+  if constexpr (requires {
+                  { s.sensor() } -> std::same_as<vec3>;
+                })
+    return s.sensor();
+  else if constexpr (requires { s.filter.sensor; })
+    return s.filter.sensor;
+  else if constexpr (requires { requires point_source<std::remove_cvref_t<decltype(s.source)>>; })
+    return sensor_of(s.source);
+  else if constexpr (requires { requires point_source<std::remove_cvref_t<decltype(s.whole)>>; })
+    return sensor_of(s.whole);
+  else if constexpr (requires { requires point_source<std::remove_cvref_t<decltype(s.piece(0))>>; })
+    return sensor_of(s.piece(0));
+  else
+    return {0, 0, 0};
+}
+
 /// `point_source<S>` with reasons.
 template <class S>
 consteval bool explain_point_source() {

@@ -3,7 +3,32 @@
 
 #include "asker.hpp"
 
+#include <clearance/points/any_points.hpp>
 #include <clearance/query/query.hpp>
+
+/// A host reads clouds of all kinds as one, so that each question is compiled for that one, and for uncertain ones.
+class read_as_one {
+ public:
+  template <class S>
+  clearance::any_points operator()(const S& source) const {
+    return source;
+  }
+  template <class S>
+  auto operator()(const clearance::uncertain<S, clearance::any_noise>& given) const {
+    return given.around_same(clearance::any_points(given.source), given.noise);
+  }
+};
+template <class Q>
+auto as_one(const clouds_about<Q>& clouds) {
+  using sure = clearance::placed<clearance::any_points>;
+  using type = std::conditional_t<std::is_same_v<typename cloud_about<Q>::type, any_cloud>, sure,
+                                  std::variant<sure, placed_uncertain<clearance::any_points>>>;
+  std::vector<type> all;
+  clearance::for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d& pose) {
+    all.push_back(clearance::placed{read_as_one{}(source), pose});
+  });
+  return all;
+}
 
 /// The library's query about one kind of trees, which it keeps alive.
 template <class Q, class Backend, class Model>
@@ -14,7 +39,11 @@ class prepared : public asker<Q> {
 
   typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
                          const Q& question) override {
-    return query_(poses, clouds, question);
+    // A device's kernels are compiled for each kind, and `unseen` asks images.
+    if constexpr (std::is_same_v<Backend, clearance::host> && !std::is_same_v<Q, clearance::unseen>)
+      return query_(poses, as_one<Q>(clouds), question);
+    else
+      return query_(poses, clouds, question);
   }
 
  protected:

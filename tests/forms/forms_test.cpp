@@ -2,6 +2,7 @@
 // Every question has every form that its declarations allow, with the bits of one call; and the page says which.
 #include "forms/forms.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <array>
 #include <atomic>
@@ -109,7 +110,7 @@ TEST_CASE("Threads that share a robot, each with a prepared question of its own,
 }
 
 TEST_CASE("docs/choosing.md has the table of forms that the questions declare") {
-  std::ifstream file(CLEARANCE_TEST_ROOT "/docs/choosing.md");
+  std::ifstream file(testing::checkout("docs/choosing.md"));
   std::stringstream page;
   page << file.rdbuf();
   INFO("the table is:\n" << table_of_forms());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 
@@ -178,7 +179,7 @@ TEST_CASE("a PLY file cut at any length or with any byte changed is read or refu
 }
 
 TEST_CASE("real damaged PLY files are read or refused", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/malformed/";
+  const std::string folder = testing::data("/malformed/");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

@@ -2,6 +2,7 @@
 #include "io/png_check.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/png.hpp>
@@ -196,7 +197,7 @@ TEST_CASE("a PNG of any size, with any filters, interlaced or not, gives the num
 }
 
 TEST_CASE("the PNG and the PCD of one real frame agree in every pixel", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/clouds/kinect_seq/";
+  const std::string folder = testing::data("/clouds/kinect_seq/");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

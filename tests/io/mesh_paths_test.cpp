@@ -2,6 +2,7 @@
 // The paths and URIs by which descriptions name meshes.
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/robot.hpp>
 
@@ -96,7 +97,7 @@ TEST_CASE("A package that no mesh names, and a file in place of a package, are n
 }
 
 TEST_CASE("A description for another machine loads where its package is given or above it", "[data]") {
-  const std::string data = CLEARANCE_TEST_DATA "/field/56-path-of-another-machine/arm_description";
+  const std::string data = testing::data("/field/56-path-of-another-machine/arm_description");
   const scene here;
   std::filesystem::copy(data, here.folder.path / "arm_description", std::filesystem::copy_options::recursive);
   std::filesystem::permissions(here.folder.path / "arm_description", std::filesystem::perms::owner_all);

@@ -3,6 +3,7 @@
 #include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/mesh.hpp>
 
@@ -383,7 +384,7 @@ TEST_CASE("damaged meshes are refused in one sentence that names the file") {
 }
 
 TEST_CASE("of the real damaged files the valid ones load and the others never crash", "[data]") {
-  const std::filesystem::path folder = CLEARANCE_TEST_DATA "/malformed";
+  const std::filesystem::path folder = testing::data("/malformed");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

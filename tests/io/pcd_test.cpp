@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 
@@ -192,7 +193,7 @@ TEST_CASE("a PCD file cut at any length or with any byte changed is read or refu
 }
 
 TEST_CASE("every real PCD file is read, with the number of invalid points that its source states", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/clouds/";
+  const std::string folder = testing::data("/clouds/");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

@@ -3,6 +3,7 @@
 #include "io/ply_values.hpp"
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/cloud_file.hpp>
 #include "io/mesh_formats.hpp"
@@ -288,7 +289,7 @@ TEST_CASE("a PLY header that says something twice, or nothing that is known, is 
 }
 
 TEST_CASE("the PLY files of the attack are read or refused as they should be", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/attack/";
+  const std::string folder = testing::data("/attack/");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

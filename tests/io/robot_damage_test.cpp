@@ -2,6 +2,7 @@
 #include "io/damage.hpp"
 #include "io/urdf.hpp"
 #include "io/xml.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/error.hpp>
 #include <clearance/io/robot.hpp>
@@ -308,7 +309,7 @@ TEST_CASE("only regular files are meshes, and what a robot reads has limits") {
 }
 
 TEST_CASE("the robots that were made to attack are refused, or answered in full", "[data]") {
-  const std::filesystem::path folder = CLEARANCE_TEST_DATA "/attack";
+  const std::filesystem::path folder = testing::data("/attack");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;
@@ -331,7 +332,7 @@ TEST_CASE("the robots that were made to attack are refused, or answered in full"
 }
 
 TEST_CASE("every single damaged number of the real robots is refused, or was of no use", "[data]") {
-  const std::filesystem::path folder = CLEARANCE_TEST_DATA "/robots";
+  const std::filesystem::path folder = testing::data("/robots");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

@@ -3,6 +3,7 @@
 #include "io/gltf_files.hpp"
 #include "io/robot_folder.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/robot.hpp>
 
@@ -150,7 +151,7 @@ TEST_CASE("Links that tell speak for those that cannot, and each for itself wher
 }
 
 TEST_CASE("A post that the format has upright stands upright", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/field/01-glb-y-up";
+  const std::string folder = testing::data("/field/01-glb-y-up");
   const io::robot r = io::load_robot(folder + "/post.urdf");
   Eigen::AlignedBox3d box;
   for (const auto& v : r.parts()[0].mesh.vertices) box.extend(v);

@@ -2,6 +2,7 @@
 #include "io/robot_folder.hpp"
 #include "io/robot_link.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/io/robot.hpp>
 #include <clearance/io/robot_bodies.hpp>
@@ -341,7 +342,7 @@ TEST_CASE("a bad robot file is refused in one sentence with its name") {
 }
 
 TEST_CASE("real robots have the parts, triangles and height that their source states", "[data]") {
-  const std::filesystem::path folder = CLEARANCE_TEST_DATA "/robots";
+  const std::filesystem::path folder = testing::data("/robots");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;
@@ -380,7 +381,7 @@ TEST_CASE("real robots have the parts, triangles and height that their source st
 }
 
 TEST_CASE("the UR5e's hand is where its maker's Denavit-Hartenberg table puts it", "[data]") {
-  const std::filesystem::path file = CLEARANCE_TEST_DATA "/robots/ur5e/ur5e.urdf";
+  const std::filesystem::path file = testing::data("/robots/ur5e/ur5e.urdf");
   if (!std::filesystem::exists(file)) {
     WARN("SKIPPED: no file " << file);
     return;

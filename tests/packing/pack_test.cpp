@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "packing/packers.hpp"
+#include "support/places.hpp"
 
 #include <clearance/packing/pack.hpp>
 #include <clearance/solid/implicit.hpp>
@@ -75,7 +76,7 @@ TEST_CASE("real robots are packed within the laws", "[data]") {
 
 TEST_CASE("a real link is filled as well as it was, nearly", "[data]") {
   const std::filesystem::path file =
-      std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes/link_2.STL";
+      std::filesystem::path(testing::data("/robots/kuka_lwr4plus_cad/meshes/link_2.STL"));
   if (!std::filesystem::exists(file)) {
     WARN("SKIPPED: no file " << file);
     return;

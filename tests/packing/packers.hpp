@@ -2,6 +2,7 @@
 #pragma once
 
 #include "packing/laws.hpp"
+#include "support/places.hpp"
 #include "support/random.hpp"
 
 #include <clearance/packing/pack.hpp>
@@ -183,7 +184,7 @@ void ends_on_thin_bodies(Pack pack, double thinnest = 1e-7) {
 
 template <class Pack>
 void packs_real_links(Pack pack, std::size_t count, std::initializer_list<const char*> names) {
-  const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes";
+  const std::filesystem::path folder = std::filesystem::path(testing::data("/robots/kuka_lwr4plus_cad/meshes"));
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

@@ -4,6 +4,7 @@
 // checked by brute force in long double and solid angles; these share nothing with it.
 #include "support/laws.hpp"
 #include "support/oracle.hpp"
+#include "support/places.hpp"
 #include "support/random.hpp"
 
 #include <clearance/io/mesh.hpp>
@@ -147,7 +148,7 @@ void check(const clearance::triangle_mesh& mesh, const std::string& name, census
 
 TEST_CASE("The bracket holds and the signed distance is never above the spheres': every robot's links", "[data]") {
   namespace io = clearance::io;
-  const std::filesystem::path robots = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots";
+  const std::filesystem::path robots = std::filesystem::path(testing::data("/robots"));
   census all;
   verdict v;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(robots)) {
@@ -164,7 +165,7 @@ TEST_CASE("The bracket holds and the signed distance is never above the spheres'
 
 TEST_CASE("The bracket holds and the signed distance is never above the spheres': every mesh with an inside",
           "[data]") {
-  const std::filesystem::path meshes = std::filesystem::path(CLEARANCE_TEST_DATA) / "meshes";
+  const std::filesystem::path meshes = std::filesystem::path(testing::data("/meshes"));
   census all;
   std::size_t unread = 0;
   verdict v;

@@ -3,6 +3,7 @@
 // Robots and depth frames as found, from the data folder.
 
 #include "support/laws.hpp"
+#include "support/places.hpp"
 #include "support/scenes.hpp"
 
 #include <clearance/io/cloud_file.hpp>
@@ -14,7 +15,7 @@
 
 namespace testing {
 
-inline const std::string data_folder = CLEARANCE_TEST_DATA;
+inline const std::string data_folder = testing::data();
 
 /// A robot read, closed and packed once.
 struct real_robot {

@@ -5,6 +5,7 @@
 #include "solid/damaged.hpp"
 #include "support/catch.hpp"
 #include "support/laws.hpp"
+#include "support/places.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/packing/pack.hpp>
@@ -95,13 +96,13 @@ TEST_CASE("The closed links of real robots keep the law of the inside, whatever 
   std::vector<clearance::triangle_mesh> links;
   for (const char* name : {"base", "forearm", "shoulder", "upperarm", "wrist1", "wrist2", "wrist3"}) {
     const auto file =
-        std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/ur5e/meshes/collision" / (std::string(name) + ".stl");
+        std::filesystem::path(testing::data("/robots/ur5e/meshes/collision")) / (std::string(name) + ".stl");
     if (const auto mesh = shapes::binary_stl(file.string());
         !mesh.triangles.empty() && clearance::close_mesh(mesh).inside == clearance::inside_by::closed)
       links.push_back(mesh);
   }
   if (links.empty()) {
-    WARN("SKIPPED: no robots in " << CLEARANCE_TEST_DATA);
+    WARN("SKIPPED: no robots in " << testing::data());
     return;
   }
   runs(number_of("CLEARANCE_INSIDE_FIRST", 0), number_of("CLEARANCE_INSIDE_RUNS", usual_runs) / 10, links, 20);

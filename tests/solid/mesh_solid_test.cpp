@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>
@@ -132,7 +133,7 @@ TEST_CASE("an implicit solid is its function and its bounds") {
 }
 
 TEST_CASE("mesh solids of real robots are exact", "[data]") {
-  const std::filesystem::path folder = std::filesystem::path(CLEARANCE_TEST_DATA) / "robots/kuka_lwr4plus_cad/meshes";
+  const std::filesystem::path folder = std::filesystem::path(testing::data("/robots/kuka_lwr4plus_cad/meshes"));
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

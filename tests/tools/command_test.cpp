@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the built command as a user would.
 #include "io/scratch_file.hpp"
+#include "support/places.hpp"
 #include "tools/run_command.hpp"
 #include "tools/small_png.hpp"
 
@@ -370,7 +371,7 @@ TEST_CASE("clearance demo agrees with itself") {
 }
 
 TEST_CASE("a real depth image and the point cloud of the same frame give the same answer", "[data]") {
-  const std::string data = CLEARANCE_TEST_DATA;
+  const std::string data = testing::data();
   if (!std::filesystem::exists(data)) {
     WARN("SKIPPED: no folder " << data);
     return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cases of public bug reports that are about files, each with its right answer (case.md in its folder).
 #include "io/robot_folder.hpp"
+#include "support/places.hpp"
 #include "tools/run_command.hpp"
 
 #include <filesystem>
@@ -10,7 +11,7 @@ namespace field_cases_test {
 
 namespace {
 
-const std::string field = CLEARANCE_TEST_DATA "/field/";
+const std::string field = testing::data("/field/");
 
 struct field_case {
   std::string robot, cloud, more;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every option of every subcommand, as its --help lists them: if given, it has a value or is refused.
 #include "io/scratch_file.hpp"
+#include "support/places.hpp"
 #include "tools/run_command.hpp"
 
 #include <sstream>
@@ -131,7 +132,7 @@ TEST_CASE("every limit of a mesh that a refusal names is set by that name") {
 }
 
 TEST_CASE("the attack's empty --check is refused", "[data]") {
-  const std::string folder = CLEARANCE_TEST_DATA "/attack/";
+  const std::string folder = testing::data("/attack/");
   if (!std::filesystem::exists(folder)) {
     WARN("SKIPPED: no folder " << folder);
     return;

@@ -2,6 +2,7 @@
 // Packings in files and in the cache, as a user of the command sees them.
 #include "io/robot_folder.hpp"
 #include "io/scratch_file.hpp"
+#include "support/places.hpp"
 #include "tools/run_command.hpp"
 
 #include <clearance/io/error.hpp>
@@ -168,7 +169,7 @@ TEST_CASE("commands at the same time share a cache") {
   std::vector<FILE*> running;
   for (int i = 0; i < 6; ++i)
     running.push_back(::popen(
-        ("CLEARANCE_CACHE='" + cache.path.string() + "' \"" CLEARANCE_COMMAND "\" " + s.ask + " --spheres 80 2>&1")
+        ("CLEARANCE_CACHE='" + cache.path.string() + "' \"" + testing::command() + "\" " + s.ask + " --spheres 80 2>&1")
             .c_str(),
         "r"));
   std::vector<nlohmann::json> answers;
@@ -275,7 +276,7 @@ TEST_CASE("packing stops where it is told to") {
 }
 
 TEST_CASE("real robots answer from their files as they do when they are packed", "[data]") {
-  const std::string data = CLEARANCE_TEST_DATA;
+  const std::string data = testing::data();
   if (!std::filesystem::exists(data)) {
     WARN("SKIPPED: no folder " << data);
     return;

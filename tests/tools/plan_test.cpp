@@ -418,8 +418,8 @@ TEST_CASE("The cache of fields: options that change nothing are refused, and wha
   CHECK(std::filesystem::is_empty(full));
   std::vector<FILE*> running;  // at once
   for (int k = 0; k < 2; ++k)
-    running.push_back(::popen(("CLEARANCE_CACHE='" + (place.path / "new").string() + "' \"" CLEARANCE_COMMAND "\" " +
-                               p.ask + " --csv --fields 2>&1")
+    running.push_back(::popen(("CLEARANCE_CACHE='" + (place.path / "new").string() + "' \"" + testing::command() +
+                               "\" " + p.ask + " --csv --fields 2>&1")
                                   .c_str(),
                               "r"));
   for (FILE* each : running) {

@@ -4,6 +4,7 @@
 
 #include "io/scratch_file.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +26,8 @@ inline outcome run_command(const std::string& arguments, const std::string& cach
                            const std::string& before = {}) {
   const scratch_file err(".txt");
   FILE* pipe = ::popen(
-      (before + "CLEARANCE_CACHE='" + cache + "' \"" CLEARANCE_COMMAND "\" " + arguments + " 2>" + err.path).c_str(),
+      (before + "CLEARANCE_CACHE='" + cache + "' \"" + testing::command() + "\" " + arguments + " 2>" + err.path)
+          .c_str(),
       "r");
   REQUIRE(pipe);
   outcome o;

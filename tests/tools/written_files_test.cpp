@@ -74,7 +74,7 @@ struct interrupted {
     const ::pid_t child = ::fork();
     if (child == 0) {
       ::dup2(ends[1], 1), ::close(ends[0]), ::close(ends[1]);
-      const std::string line = "CLEARANCE_CACHE= exec \"" CLEARANCE_COMMAND "\" " + arguments + " 2>/dev/null";
+      const std::string line = "CLEARANCE_CACHE= exec \"" + testing::command() + "\" " + arguments + " 2>/dev/null";
       ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
       ::_exit(127);
     }
@@ -210,8 +210,8 @@ TEST_CASE("a real file system that is full costs nothing but the new file") {
   }
   for (const auto& [ending, write] : w.writers()) {
     const scratch_file script(".sh", "mount -t tmpfs -o size=4k none " + small + " && cd " + small +
-                                         " && echo old >out" + ending + " && CLEARANCE_CACHE= " CLEARANCE_COMMAND " " +
-                                         write + small + "/out" + ending + "; code=$?; cat out" + ending +
+                                         " && echo old >out" + ending + " && CLEARANCE_CACHE= " + testing::command() +
+                                         " " + write + small + "/out" + ending + "; code=$?; cat out" + ending +
                                          "; ls -A; exit $code\n");
     const outcome o = [&] {
       outcome made;

@@ -12,15 +12,15 @@
 
 /// For a model that is kept elsewhere, or in `keeps`.
 template <class Backend, class Model>
-class query_of final : public prepared_query {
+class query_of final : public prepared_query<Backend> {
  public:
   query_of(const Backend& on, const Model& model, std::shared_ptr<const Model> keeps = {})
       : keeps_(std::move(keeps)), least_(on, model, {}), each_(on, model, {}) {}
 
-  clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) override {
+  clearance::min_distance_result least(poses_of poses, const placed_points<Backend>& clouds) override {
     return least_(poses, clouds);
   }
-  reply least_per_part(poses_of poses, const std::vector<placed_points>& clouds) override {
+  reply least_per_part(poses_of poses, const placed_points<Backend>& clouds) override {
     const auto& [all, parts] = each_(poses, clouds);
     return {all, parts};
   }
@@ -33,7 +33,7 @@ class query_of final : public prepared_query {
 };
 
 template <class Backend>
-prepared_query& robot_on_backend<Backend>::prepared() {
+prepared_query<Backend>& robot_on_backend<Backend>::prepared() {
   if (prepared_) return *prepared_;
   const auto own = [&]<class Model>(Model model) {
     const auto kept = std::make_shared<const Model>(std::move(model));
@@ -47,7 +47,7 @@ prepared_query& robot_on_backend<Backend>::prepared() {
     if (asked_.volume == volume_kind::aabb) own(moved(trees_of_triangles<clearance::aabb>));
   }
   if (!prepared_)
-    prepared_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_query> {
+    prepared_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_query<Backend>> {
       return std::make_unique<query_of<Backend, Model>>(on_, model);
     });
   return *prepared_;
@@ -55,7 +55,7 @@ prepared_query& robot_on_backend<Backend>::prepared() {
 
 template <class Backend>
 reply robot_on_backend<Backend>::least(poses_of poses) {
-  prepared_query& asked = prepared();
+  prepared_query<Backend>& asked = prepared();
   stopwatch clock;
   reply out{asked.least(poses, clouds_), {}};
   query = clock.lap();
@@ -64,7 +64,7 @@ reply robot_on_backend<Backend>::least(poses_of poses) {
 
 template <class Backend>
 reply robot_on_backend<Backend>::least_per_part(poses_of poses, int repeat) {
-  prepared_query& asked = prepared();
+  prepared_query<Backend>& asked = prepared();
   reply out;
   double spent = 0;
   stopwatch clock;

@@ -34,15 +34,15 @@ class placed_question {
 
 /// For a model that is kept elsewhere.
 template <class Backend, class Model>
-class plan_of final : public prepared_plan {
+class plan_of final : public prepared_plan<Backend> {
  public:
   plan_of(const Backend& on, const Model& model) : on_(on), model_(model), least_(on, model) {}
 
-  const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
+  const clearance::min_distances_result& ask(poses_of poses, const placed_points<Backend>& clouds,
                                              double d_max) override {
     return least_(poses, clouds, {.d_max = clearance::real(d_max)});
   }
-  const clearance::min_distances_per_part_result& certain(poses_of poses, const std::vector<uncertain_points>& clouds,
+  const clearance::min_distances_per_part_result& certain(poses_of poses, const uncertain_points<Backend>& clouds,
                                                           const clearance::min_distances_per_part& options) override {
     if (!certain_) certain_.emplace(on_, model_);
     return (*certain_)(poses, clouds, options);
@@ -56,9 +56,9 @@ class plan_of final : public prepared_plan {
 };
 
 template <class Backend>
-prepared_plan& robot_on_backend<Backend>::planned() {
+prepared_plan<Backend>& robot_on_backend<Backend>::planned() {
   if (!planned_)
-    planned_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_plan> {
+    planned_ = with_usual_trees([&]<class Model>(const Model& model) -> std::unique_ptr<prepared_plan<Backend>> {
       return std::make_unique<plan_of<Backend, Model>>(on_, model);
     });
   return *planned_;
@@ -66,7 +66,7 @@ prepared_plan& robot_on_backend<Backend>::planned() {
 
 template <class Backend>
 clearance::min_distances_result robot_on_backend<Backend>::plan(poses_of poses, double d_max) {
-  prepared_plan& asked = planned();
+  prepared_plan<Backend>& asked = planned();
   stopwatch clock;
   const clearance::min_distances_result& found = asked.ask(poses, clouds_, d_max);
   query = clock.lap();
@@ -76,7 +76,7 @@ clearance::min_distances_result robot_on_backend<Backend>::plan(poses_of poses, 
 template <class Backend>
 clearance::min_distances_per_part_result robot_on_backend<Backend>::certain_plan(poses_of poses, double d_max,
                                                                                  const std::vector<double>& radii) {
-  prepared_plan& asked = planned();
+  prepared_plan<Backend>& asked = planned();
   stopwatch clock;
   const clearance::min_distances_per_part_result& found = asked.certain(poses, until_end_, {d_max, radii});
   query = clock.lap();

@@ -6,6 +6,7 @@
 #include "../stopwatch.hpp"
 
 #include <clearance/frames/readable.hpp>
+#include <clearance/points/any_points.hpp>
 #include <clearance/query/query.hpp>
 #include <clearance/usual_models.hpp>
 
@@ -15,15 +16,25 @@ namespace clearance {
 struct min_distances_per_part;
 }
 
-/// A cloud in the library's terms.
-using placed_points =
-    std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
-
-/// The same with what is uncertain about it.
+/// Clouds in the library's terms, and with what is uncertain about them. A host reads all kinds as one.
 template <class S>
 using placed_uncertain = clearance::placed<clearance::uncertain<S, clearance::any_noise>>;
-using uncertain_points =
-    std::variant<placed_uncertain<clearance::point_span>, placed_uncertain<clearance::depth_image<std::uint16_t>>>;
+template <class Backend>
+struct clouds_on {
+  using one =
+      std::variant<clearance::placed<clearance::point_span>, clearance::placed<clearance::depth_image<std::uint16_t>>>;
+  using uncertain =
+      std::variant<placed_uncertain<clearance::point_span>, placed_uncertain<clearance::depth_image<std::uint16_t>>>;
+};
+template <>
+struct clouds_on<clearance::host> {
+  using one = clearance::placed<clearance::any_points>;
+  using uncertain = placed_uncertain<clearance::any_points>;
+};
+template <class Backend>
+using placed_points = std::vector<typename clouds_on<Backend>::one>;
+template <class Backend>
+using uncertain_points = std::vector<typename clouds_on<Backend>::uncertain>;
 
 /// The library's prepared question.
 template <class Q, class Backend, class Model>
@@ -31,20 +42,22 @@ using prepared_for =
     decltype(clearance::query(std::declval<const Backend&>(), std::declval<const Model&>(), std::declval<const Q&>()));
 
 /// The prepared query of a model, whatever its trees.
+template <class Backend>
 struct prepared_query {
   virtual ~prepared_query() = default;
-  virtual clearance::min_distance_result least(poses_of poses, const std::vector<placed_points>& clouds) = 0;
-  virtual reply least_per_part(poses_of poses, const std::vector<placed_points>& clouds) = 0;
+  virtual clearance::min_distance_result least(poses_of poses, const placed_points<Backend>& clouds) = 0;
+  virtual reply least_per_part(poses_of poses, const placed_points<Backend>& clouds) = 0;
   virtual void forget() = 0;  // the last frame, for `least_per_part`
 };
 
 /// The prepared query for many configurations.
+template <class Backend>
 struct prepared_plan {
   virtual ~prepared_plan() = default;
-  virtual const clearance::min_distances_result& ask(poses_of poses, const std::vector<placed_points>& clouds,
+  virtual const clearance::min_distances_result& ask(poses_of poses, const placed_points<Backend>& clouds,
                                                      double d_max) = 0;
   virtual const clearance::min_distances_per_part_result& certain(poses_of poses,
-                                                                  const std::vector<uncertain_points>& clouds,
+                                                                  const uncertain_points<Backend>& clouds,
                                                                   const clearance::min_distances_per_part& options) = 0;
 };
 
@@ -56,24 +69,31 @@ class robot_on_backend final : public backend_robot {
   double see(const std::vector<seen_points>& clouds) override {
     stopwatch clock;
     copies_.clear();
-    clouds_.clear();
-    uncertain_.clear();
-    until_end_.clear();
+    clouds_.clear(), uncertain_.clear(), until_end_.clear();
+    images_.clear(), uncertain_images_.clear(), images_until_end_.clear();
     any_uncertain_ = false;
     const clearance::frames::readable_on<Backend> readable{on_, copies_};
-    for (const seen_points& cloud : clouds)
+    for (const seen_points& cloud : clouds) {
+      clearance::cloud_uncertainty later = cloud.off;
+      later.age += cloud.later;
+      any_uncertain_ = any_uncertain_ || cloud.sensor.kind != clearance::noise_kind::none || cloud.off.shift > 0 ||
+                       cloud.off.turn > 0 || cloud.off.max_speed * cloud.off.age > 0;
+      const auto add = [&](const auto& source, auto& sure, auto& unsure, auto& at_end) {
+        sure.push_back(clearance::placed{source, cloud.pose});
+        unsure.push_back(clearance::placed{clearance::uncertain(source, cloud.sensor, cloud.off), cloud.pose});
+        at_end.push_back(clearance::placed{clearance::uncertain(source, cloud.sensor, later), cloud.pose});
+      };
       std::visit(
-          [&](const auto& source) {
-            const auto here = readable(source, std::uint32_t(clouds_.size()));
-            clouds_.push_back(clearance::placed{here, cloud.pose});
-            clearance::cloud_uncertainty off = cloud.off;
-            uncertain_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, off), cloud.pose});
-            any_uncertain_ = any_uncertain_ || cloud.sensor.kind != clearance::noise_kind::none || off.shift > 0 ||
-                             off.turn > 0 || off.max_speed * off.age > 0;
-            off.age += cloud.later;
-            until_end_.push_back(clearance::placed{clearance::uncertain(here, cloud.sensor, off), cloud.pose});
+          [&]<class S>(const S& source) {
+            const S here = readable(source, std::uint32_t(clouds_.size()));
+            if constexpr (std::is_same_v<Backend, clearance::host>)
+              add(clearance::any_points(here), clouds_, uncertain_, until_end_);
+            else
+              add(here, clouds_, uncertain_, until_end_);
+            if constexpr (std::is_same_v<S, image>) add(here, images_, uncertain_images_, images_until_end_);
           },
           cloud.points);
+    }
     on_.wait();
     return clock.lap();
   }
@@ -103,6 +123,7 @@ class robot_on_backend final : public backend_robot {
   }
 
  private:
+  using image = clearance::depth_image<std::uint16_t>;
   using sphere_trees = clearance::sphere_model<Backend>;
   using triangle_trees = clearance::triangle_model<Backend>;
   using trees = std::variant<std::monostate, sphere_trees, triangle_trees>;
@@ -142,17 +163,19 @@ class robot_on_backend final : public backend_robot {
   template <class Use>
   auto with_images(bool until_end, Use use);
 
-  prepared_query& prepared();
-  prepared_plan& planned();
+  prepared_query<Backend>& prepared();
+  prepared_plan<Backend>& planned();
 
   Backend on_;
   asked_model asked_;
   trees trees_;
-  std::unique_ptr<prepared_query> prepared_;
-  std::unique_ptr<prepared_plan> planned_;
-  std::vector<placed_points> clouds_;
-  std::vector<uncertain_points> uncertain_;  // the same clouds
-  std::vector<uncertain_points> until_end_;  // and as they may be when a plan ends
+  std::unique_ptr<prepared_query<Backend>> prepared_;
+  std::unique_ptr<prepared_plan<Backend>> planned_;
+  placed_points<Backend> clouds_;
+  uncertain_points<Backend> uncertain_;           // the same clouds
+  uncertain_points<Backend> until_end_;           // and as they may be when a plan ends
+  std::vector<clearance::placed<image>> images_;  // those that are images, and both again
+  std::vector<placed_uncertain<image>> uncertain_images_, images_until_end_;
   bool any_uncertain_ = false;
   clearance::frames::cloud_copies<Backend> copies_;
 };

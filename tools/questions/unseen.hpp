@@ -9,11 +9,8 @@
 template <class Backend>
 template <class Use>
 auto robot_on_backend<Backend>::with_images(bool until_end, Use use) {
-  if (any_uncertain_ || until_end) return use(until_end ? until_end_ : uncertain_);
-  std::vector<clearance::placed<clearance::depth_image<std::uint16_t>>> images;
-  for (const placed_points& cloud : clouds_)
-    images.push_back(std::get<clearance::placed<clearance::depth_image<std::uint16_t>>>(cloud));
-  return use(images);
+  if (any_uncertain_ || until_end) return use(until_end ? images_until_end_ : uncertain_images_);
+  return use(images_);
 }
 
 template <class Backend>

@@ -22,21 +22,6 @@ struct radius_shares {
   CLEARANCE_HD real sum() const { return noise + calibration + time; }
 };
 
-/// Where a source's points are seen from, in its frame: (0,0,0), or where its filter has the sensor.
-template <point_source S>
-CLEARANCE_HD vec3 sensor_of(const S& s) {
-  if constexpr (requires { s.filter.sensor; })
-    return s.filter.sensor;
-  else if constexpr (requires { sensor_of(s.source); })
-    return sensor_of(s.source);
-  else if constexpr (requires { sensor_of(s.whole); })
-    return sensor_of(s.whole);
-  else if constexpr (sharded_source<S>)
-    return sensor_of(s.piece(0));
-  else
-    return {0, 0, 0};
-}
-
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
 /// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
 /// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then. A point that
