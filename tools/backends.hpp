@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The command's only way to what the library does on a backend: plain data in and out, so that only the device's
-// translation units need nvcc.
+// The command's only way to what the library does on a backend: plain data in and out.
 
 #include <clearance/packing/packing.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -14,9 +13,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <typeindex>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -74,61 +76,6 @@ struct reply {
 
 using poses_of = std::span<const Eigen::Isometry3d>;
 
-/// A robot whose trees a backend holds, and the points that it was shown last. Each question is its own translation
-/// unit in questions/, so that they compile in parallel. A tree is built when it is first needed.
-class backend_robot {
- public:
-  virtual ~backend_robot() = default;
-
-  /// Takes points to where the backend reads them; what they view must stay until the next call. Returns the seconds.
-  virtual double see(const std::vector<seen_points>& clouds) = 0;
-
-  /// The least distance, by the library's prepared query. In all questions `poses` are world-from-body.
-  virtual reply least(poses_of poses) = 0;
-  /// With that of every part. Asked up to `repeat` times from cold while that is quick; the time is the shortest.
-  virtual reply least_per_part(poses_of poses, int repeat) = 0;
-
-  // The next ones use trees of one volume per model, because their answers do not depend on it.
-  /// The least distance as far as it is known after this many seconds; nothing about single parts.
-  virtual reply least_by(poses_of poses, double deadline) = 0;
-  virtual clearance::zones_result zones(poses_of poses, const clearance::zones& options) = 0;
-  /// `is_signed`: negative inside closed meshes; for triangles only.
-  virtual clearance::point_distances distances(poses_of poses, double d_max, bool is_signed) = 0;
-  /// The k nearest points of each part.
-  virtual clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) = 0;
-  /// Which points belong to the robot itself, within `padding` metres of it?
-  virtual clearance::self_filter_result own_points(poses_of poses, double padding) = 0;
-  virtual clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options) = 0;
-  /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
-  virtual clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts) = 0;
-  /// About what the clouds hide, which must all be images. `until_end`: or may hide until the plan ends.
-  virtual clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options, bool until_end) = 0;
-  /// The witnesses of the minima of least_per_part.
-  virtual std::vector<clearance::part_witness> witnesses(poses_of poses,
-                                                         std::span<const clearance::part_minimum> minima) = 0;
-  /// `poses`: those of one configuration after another. The query is prepared at the first call, and remembers the
-  /// places of the minima.
-  virtual clearance::min_distances_result plan(poses_of poses, double d_max) = 0;
-  /// The same about all places where points may be until the plan ends, and parts that may be `radii` elsewhere.
-  virtual clearance::min_distances_per_part_result certain_plan(poses_of poses, double d_max,
-                                                                const std::vector<double>& radii) = 0;
-  /// How near the robot comes on each way.
-  virtual std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
-                                                               const clearance::motion_clearance_options& options) = 0;
-  /// The same about what the clouds hide, whose parts' radii are those of `room`. `unknown`: it may reach into that.
-  virtual std::vector<clearance::motion_clearance_result> hidden_ways(
-      std::span<const clearance::io::joint_motion> ways, const clearance::motion_clearance_options& options,
-      const clearance::unseen& room) = 0;
-  virtual std::span<const clearance::part_facts> facts() = 0;
-
-  // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.
-  std::vector<std::string> without_field;
-  std::size_t fields = 0, fields_cached = 0;  // that are used; and how many of them the cache had
-
-  // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
-  double query = 0, build = 0, upload = 0;
-};
-
 /// The fields of all bodies, for `plan`: without, only if the cache has all of them, or sampled where it has them not.
 enum class field_use { none, if_cached, always };
 
@@ -141,11 +88,88 @@ struct asked_model {
   std::filesystem::path cache = {};  // a folder for fields; empty: they are not kept
 };
 
-std::unique_ptr<backend_robot> robot_on_host(const asked_model& asked);
-/// Throws std::runtime_error if no device is compiled in.
-std::unique_ptr<backend_robot> robot_on_device(const asked_model& asked);
+class all_ranks;
+struct backend_memory;
+using named_values = std::vector<std::pair<std::string, std::string>>;
+
+/// A robot whose trees a backend holds, and the points that it was shown last. A tree is built and a question prepared
+/// when it is first needed.
+class backend_robot {
+ public:
+  /// Throws std::runtime_error if no device is compiled in.
+  backend_robot(bool on_device, const asked_model& asked);
+  backend_robot(const backend_robot&) = delete;
+  ~backend_robot();
+
+  /// From now on all ranks answer together; see `all_ranks`.
+  void join(all_ranks& all, const named_values& options);
+
+  /// Takes points to where the backend reads them; what they view must stay until the next call. Returns the seconds.
+  double see(const std::vector<seen_points>& clouds);
+
+  /// The least distance, by the library's prepared query. In all questions `poses` are world-from-body.
+  reply least(poses_of poses);
+  /// With that of every part. Asked up to `repeat` times from cold while that is quick; the time is the shortest.
+  reply least_per_part(poses_of poses, int repeat);
+
+  // The next ones use trees of one volume per model, because their answers do not depend on it.
+  /// The least distance as far as it is known after this many seconds; nothing about single parts.
+  reply least_by(poses_of poses, double deadline);
+  clearance::zones_result zones(poses_of poses, const clearance::zones& options);
+  /// `is_signed`: negative inside closed meshes; for triangles only.
+  clearance::point_distances distances(poses_of poses, double d_max, bool is_signed);
+  /// The k nearest points of each part.
+  clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max);
+  /// Which points belong to the robot itself, within `padding` metres of it?
+  clearance::self_filter_result own_points(poses_of poses, double padding);
+  clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options);
+  /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
+  clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts);
+  /// About what the clouds hide, which must all be images. `until_end`: or may hide until the plan ends.
+  clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options, bool until_end);
+  /// The witnesses of the minima of least_per_part.
+  std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima);
+  /// `poses`: those of one configuration after another.
+  clearance::min_distances_result plan(poses_of poses, double d_max);
+  /// The same about all places where points may be until the plan ends, and parts that may be `radii` elsewhere.
+  clearance::min_distances_per_part_result certain_plan(poses_of poses, double d_max, const std::vector<double>& radii);
+  /// How near the robot comes on each way.
+  std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
+                                                       const clearance::motion_clearance_options& options);
+  /// The same about what the clouds hide, whose parts' radii are those of `room`. `unknown`: it may reach into that.
+  std::vector<clearance::motion_clearance_result> hidden_ways(std::span<const clearance::io::joint_motion> ways,
+                                                              const clearance::motion_clearance_options& options,
+                                                              const clearance::unseen& room);
+  std::span<const clearance::part_facts> facts();
+
+  // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.
+  std::vector<std::string> without_field;
+  std::size_t fields = 0, fields_cached = 0;  // that are used; and how many of them the cache had
+
+  // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
+  double query = 0, build = 0, upload = 0;
+
+ private:
+  struct seen_clouds;
+
+  template <class Interface>
+  Interface& prepared(const typename Interface::question_type& q, bool other_volume = false);
+  template <class Q, class Ask>
+  typename Q::result together(poses_of poses, const Q& q, const Ask& ask);
+  template <class Q, class Cloud>
+  typename Q::result ask(poses_of poses, const std::vector<Cloud>& clouds, const Q& q);
+  bool other_volume() const { return asked_.volume != usual_volume(asked_.model); }
+
+  bool on_device_;
+  asked_model asked_;
+  all_ranks* ranks_ = nullptr;
+  std::unique_ptr<backend_memory> memory_;
+  std::unique_ptr<seen_clouds> seen_;
+  std::map<std::type_index, std::shared_ptr<void>> queries_;  // by their interface
+};
+
 inline std::unique_ptr<backend_robot> robot_on(bool device, const asked_model& asked) {
-  return device ? robot_on_device(asked) : robot_on_host(asked);
+  return std::make_unique<backend_robot>(device, asked);
 }
 
 /// As clearance::pack, on the device; any thread may call it. Throws std::runtime_error if no device is compiled in.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces everything that nvcc compiles if there is no CUDA compiler.
-#include "backends.hpp"
+#include "questions/asked.hpp"
 
 #include <stdexcept>
 
@@ -10,7 +10,7 @@ constexpr const char* without = "this clearance was built without CUDA";
 
 }  // namespace
 
-std::unique_ptr<backend_robot> robot_on_device(const asked_model&) { throw std::runtime_error(without); }
+std::unique_ptr<backend_memory> memory_on_device(const asked_model&) { throw std::runtime_error(without); }
 
 clearance::packing pack_on_device(const clearance::mesh_solid&, const clearance::pack_options&) {
   throw std::runtime_error(without);

@@ -62,7 +62,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   const asked_model model{asked.model, asked.volume, &bodies, fields,
                           chosen_cache(asked.no_cache, asked.cache).folder()};
   auto there = robot_on(asked.on_device, model);
-  if (ranks) there = ranks->together(std::move(there), model, asked.alike);
+  if (ranks) there->join(*ranks, asked.alike);
   report.upload = there->see(clouds.seen);
   std::vector<double> radii;
   if (asked.certain) check_d_max(asked, radii = radii_in_rows(asked, robot, rows, there->facts()));

@@ -184,7 +184,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   shown.show("asking");
   const asked_model model{asked.model, asked.volume, &bodies};
   auto there = robot_on(asked.on_device, model);
-  if (ranks) there = ranks->together(std::move(there), model, asked.alike);
+  if (ranks) there->join(*ranks, asked.alike);
   report.upload = there->see(clouds.seen);
   if (asked.self_filter) {
     own_points own = hide_own_points(asked, *there, poses, clouds, summed_radii(asked, robot, joints, there->facts()));

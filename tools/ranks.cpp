@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ranks.hpp"
 
-#include "robot_bodies.hpp"
-#include "stopwatch.hpp"
-
 #include <clearance/io/bytes.hpp>
 #include <clearance/io/digest.hpp>
-#include <clearance/io/joint_motion.hpp>
-#include <clearance/motion_clearance.hpp>
+#include <clearance/io/robot_bodies.hpp>
 #include <clearance/mpi/ranks.hpp>
 #include <clearance/points/sharded.hpp>
 #include <clearance/query/pieces.hpp>
-#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances.hpp>
-#include <clearance/questions/min_distance_supported.hpp>
-#include <clearance/questions/min_distances_per_part.hpp>
+#include <clearance/questions/min_distances.hpp>
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/part_witnesses.hpp>
 #include <clearance/questions/self_filter.hpp>
-#include <clearance/questions/unseen.hpp>
+#include <clearance/questions/signed_distances.hpp>
 #include <clearance/questions/zones.hpp>
 
 #include <cstdlib>
@@ -98,8 +92,55 @@ class mpi_ranks final : public all_ranks {
 
   bool speaks() const override { return rank_ == 0; }
 
-  std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                          const named_values& options) override;
+  void agree_on(const asked_model& asked, const named_values& options) override {
+    parts_ = asked.bodies->size(), of_spheres_ = asked.model == model_kind::spheres;
+    alike_.clear();
+    for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
+    alike_.push_back({"robot", digest_of(*asked.bodies)});
+  }
+  std::vector<cloud> share(const std::vector<cloud>& clouds) override {
+    share_.clear(), first_.clear();
+    std::vector<std::pair<std::string, io::digest>> seen;
+    for (const cloud& one : clouds)
+      std::visit(
+          [&](const auto& its) {
+            seen.push_back({"cloud " + std::to_string(share_.size()), digest_of(its.source, its.pose)});
+            take_share(its.source, its.pose);
+          },
+          one);
+    at_once([&](mpi::together& here) {
+      auto anywhere = share_;  // poses are compared below, where an option's name is said
+      for (auto& its : anywhere) std::visit([](auto& mine) { mine.pose = Eigen::Isometry3d::Identity(); }, its);
+      here.agree(parts_, {}, anywhere);  // the first step of all, also of one that has failed
+      compare(alike_);
+      compare(seen);
+    });
+    return share_;
+  }
+
+  /// This rank's answer about its share, joined with those of all others.
+  template <class Joined, class Ask>
+  auto joined(Joined answer, poses_of poses, const Ask& ask) -> decltype(answer.result()) {
+    return at_once([&](mpi::together& here) {
+      here.agree(parts_, poses, share_);
+      decltype(ask()) mine{};
+      here.attempt([&] { mine = ask(); });
+      here.join(answer, mine);
+      return answer.result();
+    });
+  }
+  bool of_spheres() const { return of_spheres_; }
+  /// The minima whose points are in this rank's share.
+  std::vector<part_minimum> own(std::span<const part_minimum> minima) const {
+    std::vector<part_minimum> all(minima.begin(), minima.end());
+    for (part_minimum& its : all) {
+      if (its.cloud == none) continue;
+      const std::size_t count = std::visit([](const auto& mine) { return mine.source.size(); }, share_[its.cloud]);
+      its.point -= std::uint32_t(first_[its.cloud]);
+      if (its.point >= count) its = {};  // it is another rank's
+    }
+    return all;
+  }
 
   void part() override {
     meet({});
@@ -127,175 +168,74 @@ class mpi_ranks final : public all_ranks {
   }
   bool parted() const { return parted_; }
 
+ private:
   std::size_t rank() const { return std::size_t(rank_); }
   std::size_t ranks() const { return std::size_t(ranks_); }
 
- private:
-  int rank_ = 0, ranks_ = 1;
-  bool parted_ = false;
-};
-
-class robot_of_ranks final : public backend_robot {
- public:
-  robot_of_ranks(mpi_ranks& all, std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                 const named_values& options)
-      : all_(all), mine_(std::move(mine)), asked_(asked) {
-    for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
-    alike_.push_back({"robot", digest_of(*asked.bodies)});
-  }
-
-  double see(const std::vector<seen_points>& clouds) override {
-    std::vector<seen_points> shares;
-    share_.clear(), first_.clear();
-    std::vector<std::pair<std::string, io::digest>> seen;
-    for (const seen_points& cloud : clouds) {
-      std::visit(
-          [&](const auto& source) {
-            seen.push_back({"cloud " + std::to_string(share_.size()), digest_of(source, cloud.pose)});
-            take_share(source);
-          },
-          cloud.points);
-      std::visit(
-          [&](auto& mine) {
-            mine.pose = cloud.pose;
-            shares.push_back({mine.source, cloud.pose});
-          },
-          share_.back());
-    }
-    all_.at_once([&](mpi::together& here) {
-      auto anywhere = share_;  // poses are compared below, where an option's name is said
-      for (auto& its : anywhere) std::visit([](auto& mine) { mine.pose = Eigen::Isometry3d::Identity(); }, its);
-      here.agree(asked_.bodies->size(), {}, anywhere);  // the first step of all, also of one that has failed
-      compare(alike_);
-      compare(seen);
-    });
-    return mine_->see(shares);
-  }
   /// Throws on every rank if one has something else than rank 0. All have as many.
   void compare(const std::vector<std::pair<std::string, io::digest>>& alike) const {
     std::vector<io::digest> mine;
     for (const auto& its : alike) mine.push_back(its.second);
-    const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, int(all_.ranks()), mine.data(), mine.size());
+    const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, ranks_, mine.data(), mine.size());
     for (std::size_t i = 0; i < each.size(); ++i)
       if (const std::size_t k = i % mine.size(); each[i] != each[k])
         throw std::invalid_argument("rank " + std::to_string(i / mine.size()) + " has another " + alike[k].first +
                                     " than rank 0");
   }
-
-  reply least(poses_of) override { none_of_ranks(); }
-  reply least_by(poses_of, double) override { none_of_ranks(); }
-  supported_distance supported(poses_of, const min_distance_supported&) override { none_of_ranks(); }
-  certain_distance_result certain(poses_of, std::span<const part_radius>) override { none_of_ranks(); }
-  unseen_result unseen(poses_of, const clearance::unseen&, bool) override { none_of_ranks(); }
-  std::vector<motion_clearance_result> hidden_ways(std::span<const io::joint_motion>, const motion_clearance_options&,
-                                                   const clearance::unseen&) override {
-    none_of_ranks();
-  }
-
-  reply least_per_part(poses_of poses, int repeat) override {
-    const auto found = joined<min_distance_per_part>(poses, [&] {
-      const reply its = mine_->least_per_part(poses, repeat);
-      return min_distance_per_part_result{its.result, its.parts};
-    });
-    return {found.all, found.parts};
-  }
-  zones_result zones(poses_of poses, const clearance::zones& options) override {
-    return joined<clearance::zones>(poses, [&] { return mine_->zones(poses, options); });
-  }
-  point_distances distances(poses_of poses, double d_max, bool is_signed) override {
-    return joined<clearance::distances>(poses, [&] { return mine_->distances(poses, d_max, is_signed); });
-  }
-  nearest_k_result nearest(poses_of poses, std::size_t k, double d_max) override {
-    return joined<nearest_k>(poses, [&] { return mine_->nearest(poses, k, d_max); });
-  }
-  self_filter_result own_points(poses_of poses, double padding) override {
-    return joined<self_filter>(poses, [&] { return mine_->own_points(poses, padding); });
-  }
-  std::vector<part_witness> witnesses(poses_of poses, std::span<const part_minimum> minima) override {
-    std::vector<part_minimum> own(minima.begin(), minima.end());
-    for (part_minimum& its : own) {
-      if (its.cloud == none) continue;
-      const std::size_t count = std::visit([](const auto& cloud) { return cloud.source.size(); }, share_[its.cloud]);
-      its.point -= std::uint32_t(first_[its.cloud]);
-      if (its.point >= count) its = {};  // it is another rank's
-    }
-    return joined(joined_witnesses{}, poses, [&] { return mine_->witnesses(poses, own); });
-  }
-  min_distances_result plan(poses_of poses, double d_max) override {
-    return joined<min_distances>(poses, [&] { return mine_->plan(poses, d_max); });
-  }
-  min_distances_per_part_result certain_plan(poses_of, double, const std::vector<double>&) override { none_of_ranks(); }
-  std::vector<motion_clearance_result> ways(std::span<const io::joint_motion> ways,
-                                            const motion_clearance_options& options) override;
-  std::span<const part_facts> facts() override { return mine_->facts(); }
-
- private:
-  using placed_points = std::variant<placed<point_span>, placed<depth_image<std::uint16_t>>>;
-
-  void take_share(const point_span& cloud) {
-    first_.push_back(first_of_piece(cloud, all_.rank(), all_.ranks()));
-    share_.push_back(placed{piece_of(cloud, all_.rank(), all_.ranks())});
+  void take_share(const point_span& whole, const Eigen::Isometry3d& pose) {
+    first_.push_back(first_of_piece(whole, rank(), ranks()));
+    share_.push_back(placed{piece_of(whole, rank(), ranks()), pose});
   }
   /// One rank has the whole image; the others have no point of it, but its error, as brackets are about all clouds.
-  void take_share(const depth_image<std::uint16_t>& image) {
-    const bool mine = share_.size() % all_.ranks() == all_.rank();
+  void take_share(const depth_image<std::uint16_t>& image, const Eigen::Isometry3d& pose) {
+    const bool mine = share_.size() % ranks() == rank();
     first_.push_back(0);
-    if (mine) return share_.push_back(placed{image});
+    if (mine) return share_.push_back(placed{image, pose});
     point_span none_of_it;
     none_of_it.off = image.rounding();
-    share_.push_back(placed{none_of_it});
+    share_.push_back(placed{none_of_it, pose});
   }
 
-  /// This rank's answer about its share, joined with those of all others.
-  template <class Joined, class Ask>
-  auto joined(Joined answer, poses_of poses, const Ask& ask) -> decltype(answer.result()) {
-    return all_.at_once([&](mpi::together& here) {
-      here.agree(asked_.bodies->size(), poses, share_);
-      decltype(ask()) mine{};
-      here.attempt([&] { mine = ask(); });
-      here.join(answer, mine);
-      query = mine_->query, build = mine_->build, upload = mine_->upload;
-      without_field = mine_->without_field, fields = mine_->fields, fields_cached = mine_->fields_cached;
-      return answer.result();
-    });
-  }
-  template <class Q, class Ask>
-  typename Q::result joined(poses_of poses, const Ask& ask) {
-    const std::span<const part_facts> facts;  // none of these answers needs them to be joined
-    if (asked_.model == model_kind::spheres)
-      return joined(clearance::detail::joined_of<Q, parts_of_spheres>(Q{}, facts), poses, ask);
-    return joined(clearance::detail::joined_of<Q, parts_of_triangles>(Q{}, facts), poses, ask);
-  }
-
-  [[noreturn]] static void none_of_ranks() { throw std::logic_error("ranks are not asked this"); }
-
-  mpi_ranks& all_;
-  std::unique_ptr<backend_robot> mine_;
-  asked_model asked_;
+  int rank_ = 0, ranks_ = 1;
+  bool parted_ = false, of_spheres_ = true;
+  std::size_t parts_ = 0;
   std::vector<std::pair<std::string, io::digest>> alike_;  // what all ranks must have: its name, and its value
-  std::vector<placed_points> share_;                       // of each cloud,
+  std::vector<cloud> share_;                               // of each cloud,
   std::vector<std::size_t> first_;                         // and the number of its first point
 };
 
-std::vector<motion_clearance_result> robot_of_ranks::ways(std::span<const io::joint_motion> ways,
-                                                          const motion_clearance_options& options) {
-  const std::span<const part_facts> facts = mine_->facts();
-  stopwatch clock;
-  std::vector<motion_clearance_result> all;
-  const auto ask = [&](poses_of poses) {
-    reply found = least_per_part(poses, 1);
-    return min_distance_per_part_result{found.result, std::move(found.parts)};
-  };
-  for (const io::joint_motion& way : ways)
-    all.push_back(clearance::detail::over_motion(ask, facts, way, share_, options));
-  query = clock.lap();
-  return all;
-}
-
-std::unique_ptr<backend_robot> mpi_ranks::together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                                   const named_values& options) {
-  return std::make_unique<robot_of_ranks>(*this, std::move(mine), asked, options);
-}
+/// Lets all ranks join answers to Q, as those to `As` are joined.
+template <class Q, class As = Q>
+struct joinable {
+  joinable() {
+    joined_on_ranks<Q>::ask = [](all_ranks& all, poses_of poses, const Q& q,
+                                 const std::function<typename Q::result(const Q&)>& ask) {
+      auto& ranks = static_cast<mpi_ranks&>(all);
+      const std::span<const part_facts> facts;  // none of these answers needs them to be joined
+      const auto mine = [&] { return ask(q); };
+      if (ranks.of_spheres())
+        return ranks.joined(clearance::detail::joined_of<As, parts_of_spheres>(As{}, facts), poses, mine);
+      return ranks.joined(clearance::detail::joined_of<As, parts_of_triangles>(As{}, facts), poses, mine);
+    };
+  }
+};
+const joinable<min_distance_per_part> joins_least;
+const joinable<zones> joins_zones;
+const joinable<distances> joins_distances;
+const joinable<signed_distances, distances> joins_signed_distances;
+const joinable<nearest_k> joins_nearest;
+const joinable<self_filter> joins_labels;
+const joinable<min_distances> joins_plans;
+const bool joins_witnesses = [] {
+  joined_on_ranks<part_witnesses>::ask =
+      [](all_ranks& all, poses_of poses, const part_witnesses& q,
+         const std::function<std::vector<part_witness>(const part_witnesses&)>& ask) {
+        auto& ranks = static_cast<mpi_ranks&>(all);
+        const std::vector<part_minimum> own = ranks.own(q.minima);
+        return ranks.joined(joined_witnesses{}, poses, [&] { return ask(part_witnesses{own}); });
+      };
+  return true;
+}();
 
 }  // namespace
 

@@ -2,16 +2,13 @@
 #pragma once
 // `--shard`: the processes started by mpirun answer together.
 
-#include "backends.hpp"
+#include "questions/asked.hpp"
 
 #include <functional>
-#include <string>
-#include <utility>
-#include <vector>
 
-using named_values = std::vector<std::pair<std::string, std::string>>;
-
-/// All ranks, as this one sees them.
+/// All ranks, as this one sees them. All are shown the same clouds, and asked the same in the same order; each asks
+/// about its share of each cloud's points: a contiguous piece, but a whole image goes to one rank. All get the answer
+/// about all points. It throws on all ranks if they differ in robot, clouds, poses or options.
 class all_ranks {
  public:
   virtual ~all_ranks() = default;
@@ -19,15 +16,22 @@ class all_ranks {
   /// Does this rank print the answer?
   virtual bool speaks() const = 0;
 
-  /// The robot of all ranks. All show it the same clouds, and ask it the same in the same order; each has its own
-  /// robot, `mine`, asked about its share of each cloud's points: a contiguous piece, but a whole image goes to one
-  /// rank. All get the answer about all points. It throws on all ranks if they differ in robot, clouds, poses or
-  /// `options`, which have names and values.
-  virtual std::unique_ptr<backend_robot> together(std::unique_ptr<backend_robot> mine, const asked_model& asked,
-                                                  const named_values& options) = 0;
+  /// What all ranks must have alike from now on: the robot, and options by name and value.
+  virtual void agree_on(const asked_model& asked, const named_values& options) = 0;
+  /// This rank's share of the clouds.
+  virtual std::vector<cloud> share(const std::vector<cloud>& clouds) = 0;
 
   /// Each rank calls this after its last question. It waits until all have their answers.
   virtual void part() = 0;
+};
+
+/// Asks a question of this rank's share and joins all ranks' answers; null: ranks are not asked this. `ask` is given
+/// the question about the share.
+template <class Q>
+struct joined_on_ranks {
+  using result = typename Q::result;
+  static inline result (*ask)(all_ranks& all, poses_of poses, const Q& q,
+                              const std::function<result(const Q&)>& ask) = nullptr;
 };
 
 /// Returns what `work` returns on this rank. If it throws on one rank before `part`, it ends on all: that one throws

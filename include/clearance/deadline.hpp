@@ -47,7 +47,7 @@ class stopwatch {
 };
 
 /// The i-th piece to ask of n, a power of two: each is as far as possible from all before it.
-inline std::size_t spread(std::size_t i, std::size_t n) {
+inline std::size_t spread_piece(std::size_t i, std::size_t n) {
   std::size_t k = 0;
   for (std::size_t bit = 1; bit < n; bit *= 2) k = 2 * k + (i / bit & 1);
   return k;
@@ -83,7 +83,7 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
   try {
     std::size_t i = 0;
     for (; i < n && go_on(); ++i) {
-      const std::size_t k = detail::spread(i, n);
+      const std::size_t k = detail::spread_piece(i, n);
       ask_slices({k, k + 1, n});
     }
     if (i == 0) ask_slices({0, 0, n});  // at no points; what cannot be asked is refused all the same

@@ -2,25 +2,20 @@
 #pragma once
 // What the modules hand to one another: a question prepared for one robot on one backend, whatever its trees.
 
+#include <clearance/any/query.hpp>
 #include <clearance/frames/bracket.hpp>
-#include <clearance/frames/clouds.hpp>
 #include <clearance/points/depth_image.hpp>
-#include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
-#include <clearance/points/uncertain.hpp>
-#include <clearance/usual_models.hpp>
 
 #include <memory>
 #include <optional>
-#include <variant>
 
-/// Everything that Python may pass as a cloud. The questions are compiled for each.
-template <class... Sources>
-using placed_any = std::variant<clearance::placed<Sources>...>;
-using any_cloud = placed_any<clearance::point_span, clearance::strided_points<float>, clearance::strided_points<double>,
-                             clearance::depth_image<std::uint16_t>, clearance::depth_image<float>,
-                             clearance::ray_image<std::uint16_t>, clearance::ray_image<float>>;
+/// Everything that Python may pass as a cloud. On a device the questions are compiled for each.
+using any_cloud =
+    clearance::any::cloud<clearance::point_span, clearance::strided_points<float>, clearance::strided_points<double>,
+                          clearance::depth_image<std::uint16_t>, clearance::depth_image<float>,
+                          clearance::ray_image<std::uint16_t>, clearance::ray_image<float>>;
 
 namespace clearance {
 struct certain_distance;
@@ -35,29 +30,23 @@ struct zones;
 template <class Q, class... About>
 inline constexpr bool one_of = (std::same_as<Q, About> || ...);
 
-/// What a question's clouds may be: uncertain, too, if the question is about that. Each kind is compiled.
+/// What a question's clouds may be: uncertain, too, if the question is about that.
 template <class Q>
 struct cloud_about {
   using type = any_cloud;
 };
-template <class S>
-using placed_uncertain = clearance::placed<clearance::uncertain<S, clearance::any_noise>>;
-template <class Clouds>
-struct or_uncertain;
-template <class... S>
-struct or_uncertain<std::variant<clearance::placed<S>...>> {
-  using type = std::variant<clearance::placed<S>..., placed_uncertain<S>...>;
-};
 template <class Q>
   requires one_of<Q, clearance::certain_distance, clearance::in_collision, clearance::in_collisions,
                   clearance::min_distances, clearance::min_distances_per_part, clearance::unseen, clearance::zones>
-struct cloud_about<Q> : or_uncertain<any_cloud> {};
+struct cloud_about<Q> {
+  using type = clearance::any::uncertain_too<any_cloud>;
+};
 template <class Q>
 using clouds_about = std::vector<typename cloud_about<Q>::type>;
 
 /// A robot's trees, in memory of the backend `B`.
 template <class B = clearance::host>
-using robot_trees = std::variant<clearance::sphere_model<B>, clearance::triangle_model<B>>;
+using robot_trees = clearance::any::model<B>;
 
 /// Where a device writes the answer to a question that can be enqueued: the question's own `out`, or, about many
 /// configurations, one result of each, or of each part of each.
@@ -85,12 +74,9 @@ std::size_t results_of(std::size_t configurations, std::size_t parts) {
   return Q::each_part ? configurations * parts : configurations;
 }
 
-/// A prepared question. One thread at a time asks it. Throws as `clearance::query`.
+/// A prepared question. One thread at a time asks it.
 template <class Q>
-struct asker {
-  virtual ~asker() = default;
-  virtual typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
-                                 const Q& question) = 0;
+struct asker : clearance::any::query<Q, typename cloud_about<Q>::type> {
   /// On a device: what follows waits for the work in this stream.
   virtual void after(void*) {}
   /// On a device: enqueues a frame between what is in the caller's stream now and what comes there later. Clouds and

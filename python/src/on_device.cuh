@@ -2,7 +2,7 @@
 #pragma once
 // Questions on a device. Each prepared one has a stream of its own, which waits for the caller's by event.
 
-#include "prepared.hpp"
+#include "asker.hpp"
 
 #include <clearance/backends/own_stream.cuh>
 #include <clearance/device.cuh>
@@ -45,13 +45,13 @@ class waiting {
 };
 
 /// The library's query, whose answers stay on the device.
-template <class Q, class Backend, class Model>
-class prepared_on_device final : public prepared<Q, Backend, Model> {
-  using in_memory = prepared<Q, Backend, Model>;
+template <class Asker, class Backend, class Model>
+class prepared_on_device final : public clearance::any::prepared<Asker, Backend, Model> {
+  using in_memory = clearance::any::prepared<Asker, Backend, Model>;
+  using Q = typename Asker::question_type;
 
  public:
-  prepared_on_device(const Backend& on, std::shared_ptr<const robot_trees<Backend>> trees, const Model& model,
-                     const Q& question)
+  prepared_on_device(const Backend& on, std::shared_ptr<const void> trees, const Model& model, const Q& question)
       : in_memory(on, std::move(trees), model, question), on_(on), parts_(model.view().size()) {}
 
   std::optional<clearance::distance_certainty> enqueue(std::span<const Eigen::Isometry3d> poses,
@@ -60,7 +60,7 @@ class prepared_on_device final : public prepared<Q, Backend, Model> {
     [[maybe_unused]] auto& query = in_memory::query_;
     if constexpr (requires { typename Q::searched; }) {
       check_rigid(poses);
-      query.place(poses);
+      in_memory::place(poses);
       const auto* const results = query.enqueue(clouds, question);
       const std::size_t count = results_of<Q>(parts_ == 0 ? 0 : poses.size() / parts_, parts_);
       const clearance::device_guard guard(on_.id);
@@ -92,7 +92,9 @@ template <class Q>
 class asker_on_device final : public asker<Q> {
  public:
   asker_on_device(const device_trees& trees, const Q& question, int device)
-      : stream_(device), event_(device), inner_(prepare<prepared_on_device>(stream_.on(), trees, question)) {}
+      : stream_(device),
+        event_(device),
+        inner_(clearance::any::prepare<asker<Q>, prepared_on_device>(stream_.on(), trees, question)) {}
   asker_on_device(const asker_on_device&) = delete;
   asker_on_device& operator=(const asker_on_device&) = delete;
   /// What was enqueued still uses its memory.
@@ -100,10 +102,11 @@ class asker_on_device final : public asker<Q> {
     clearance::on_device(stream_.on().id, [this] { return cudaStreamSynchronize(stream_.on().stream); });
   }
 
-  typename Q::result ask(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
-                         const Q& question) override {
-    return inner_->ask(poses, clouds, question);
+  typename Q::result operator()(std::span<const Eigen::Isometry3d> poses, const clouds_about<Q>& clouds,
+                                const Q& question) override {
+    return (*inner_)(poses, clouds, question);
   }
+  void forget() override { inner_->forget(); }
   void after(void* caller) override {
     if (is_ordered(caller)) event_.put(static_cast<cudaStream_t>(caller), stream_.on().stream);
   }

@@ -52,7 +52,7 @@ clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
         [&]<class S>(const placed<S>& bare) {
           if (!each.doubts)
             made.push_back(bare);
-          else if constexpr (std::is_constructible_v<typename cloud_about<Q>::type, placed_uncertain<S>>)
+          else if constexpr (std::is_constructible_v<typename cloud_about<Q>::type, any::placed_uncertain<S>>)
             made.push_back(placed{uncertain(bare.source, each.doubts->noise, each.doubts->of), bare.pose});
           else
             throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
@@ -99,7 +99,7 @@ class query_of final : public any_query {
       const nb::gil_scoped_release others;
       const auto mine = take();
       if (stream) mine->after(*stream);
-      result = mine->ask(poses, seen, asked);
+      result = (*mine)(poses, seen, asked);
       give_back(mine);
     }
     if constexpr (declared_struct<typename Q::result>) {
@@ -149,10 +149,14 @@ class query_of final : public any_query {
   }
   /// Throws what asking would throw about options that no frame could mend: it asks about a frame without points.
   void check_options() const {
+    if constexpr (!any::is_about<Q, sphere_model<>>())
+      if (robot_->spheres)
+        throw std::invalid_argument(std::string("clearance: ") + declared<Q>::name +
+                                    " is about robots of triangles (model=\"triangles\"), and this one has spheres");
     Q q = standing_;
     if constexpr (requires { q.labels; }) q.labels = {};  // of a frame's points
     if constexpr (!requires { q.minima; })                // of a frame's pairs
-      ask_on_host(robot_->trees, q)->ask(std::vector(robot_->parts(), Eigen::Isometry3d::Identity()), {}, q);
+      (*ask_on_host(robot_->trees, q))(std::vector(robot_->parts(), Eigen::Isometry3d::Identity()), {}, q);
   }
   std::shared_ptr<asker<Q>> make() const {
     if (device_ == on_the_host) return ask_on_host(robot_->trees, standing_);

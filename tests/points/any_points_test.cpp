@@ -52,6 +52,9 @@ void check_views(const S& source) {
   CHECK(rounding_of(copied).absolute == rounding_of(source).absolute);
   CHECK(rounding_of(copied).relative == rounding_of(source).relative);
   CHECK(sensor_of(copied) == sensor_of(source));
+  const any_points piece = slice(slice(copied, 8, source.size()), 4, 300);
+  REQUIRE(piece.size() == 296);
+  for (std::size_t i = 0; i < piece.size(); ++i) REQUIRE(same(piece[i], source[12 + i]));
   for (const std::size_t begin : {std::size_t(0), surveyed_points, surveyed_points + 4}) {
     extent box, its_box;
     std::uint32_t dropped[drop_reasons] = {}, its_dropped[drop_reasons] = {};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Builds trees from bodies.
+// Trees of bodies, and clouds, where one backend reads them.
 
-#include "robot_on.hpp"
+#include "../stopwatch.hpp"
+#include "asked.hpp"
 
+#include <clearance/frames/readable.hpp>
 #include <clearance/io/field_cache.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/make_model.hpp>
@@ -25,24 +27,75 @@ auto trees_of_triangles(const std::vector<body>& bodies) {
 }
 
 template <class Backend>
-auto robot_on_backend<Backend>::usual_trees() -> const trees& {
-  if (trees_.index() != 0) return trees_;
-  const auto maybe_fielded = [this](const auto& make) {
-    return moved([&](const std::vector<body>& bodies) {
-      auto trees = make(bodies);
-      if (asked_.fields == field_use::none) return trees;
-      const clearance::io::field_cache cache(asked_.cache);
-      auto made = asked_.fields == field_use::always
-                      ? clearance::io::with_fields_cached(on_, std::move(trees), {}, cache)
-                      : clearance::io::with_kept_fields(std::move(trees), {}, cache);
-      without_field = std::move(made.without);
-      fields = made.model.fields().size(), fields_cached = fields == 0 ? 0 : made.found;
-      return std::move(made.model);
+class memory_on final : public backend_memory {
+ public:
+  memory_on(const Backend& on, const asked_model& asked) : on_(on), asked_(asked) {}
+
+  std::vector<cloud> put(const std::vector<cloud>& clouds) override {
+    copies_.clear();
+    const clearance::frames::readable_on<Backend> readable{on_, copies_};
+    std::vector<cloud> there;
+    clearance::for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d& pose) {
+      there.push_back(clearance::placed{readable(source, std::uint32_t(there.size())), pose});
     });
-  };
-  if (asked_.model == model_kind::spheres)
-    trees_.template emplace<sphere_trees>(maybe_fielded(trees_of_spheres<clearance::sphere>));
-  else
-    trees_.template emplace<triangle_trees>(maybe_fielded(trees_of_triangles<clearance::obb>));
-  return trees_;
-}
+    on_.wait();
+    return there;
+  }
+
+  std::shared_ptr<const void> usual() override {
+    if (usual_) return usual_;
+    if (asked_.model == model_kind::spheres)
+      usual_ = std::make_shared<const trees>(
+          moved([&](const auto& b) { return fielded(trees_of_spheres<clearance::sphere>(b)); }));
+    else
+      usual_ = std::make_shared<const trees>(
+          moved([&](const auto& b) { return fielded(trees_of_triangles<clearance::obb>(b)); }));
+    return usual_;
+  }
+  std::shared_ptr<const void> other() override {
+    if (other_) return other_;
+    const auto keep = [&](auto make) { other_ = std::make_shared<const other_trees<Backend>>(moved(make)); };
+    if (asked_.model == model_kind::spheres)
+      asked_.volume == volume_kind::aabb ? keep(trees_of_spheres<clearance::aabb>)
+                                         : keep(trees_of_spheres<clearance::obb>);
+    else
+      asked_.volume == volume_kind::aabb ? keep(trees_of_triangles<clearance::aabb>)
+                                         : keep(trees_of_triangles<clearance::sphere>);
+    return other_;
+  }
+  std::span<const clearance::part_facts> facts() override {
+    usual();
+    return std::visit([](const auto& robot) { return robot.view().facts; }, *usual_);
+  }
+
+ private:
+  using trees = clearance::any::model<Backend>;
+
+  /// Makes a model by `make(bodies)`, where the backend reads it.
+  template <class Make>
+  auto moved(Make make) {
+    stopwatch clock;
+    const auto made = make(*asked_.bodies);
+    build += clock.lap();
+    auto there = made.on(on_);
+    on_.wait();
+    upload += clock.lap();
+    return there;
+  }
+  template <class Robot>
+  Robot fielded(Robot robot) {
+    if (asked_.fields == field_use::none) return robot;
+    const clearance::io::field_cache cache(asked_.cache);
+    auto made = asked_.fields == field_use::always ? clearance::io::with_fields_cached(on_, std::move(robot), {}, cache)
+                                                   : clearance::io::with_kept_fields(std::move(robot), {}, cache);
+    without_field = std::move(made.without);
+    fields = made.model.fields().size(), fields_cached = fields == 0 ? 0 : made.found;
+    return std::move(made.model);
+  }
+
+  Backend on_;
+  asked_model asked_;
+  std::shared_ptr<const trees> usual_;
+  std::shared_ptr<const other_trees<Backend>> other_;
+  clearance::frames::cloud_copies<Backend> copies_;
+};

@@ -3,8 +3,6 @@
 
 #include "trees.hpp"
 
-template auto robot_on_backend<clearance::device>::usual_trees() -> const trees&;
-
-std::unique_ptr<backend_robot> robot_on_device(const asked_model& asked) {
-  return std::make_unique<robot_on_backend<clearance::device>>(clearance::device{}, asked);
+std::unique_ptr<backend_memory> memory_on_device(const asked_model& asked) {
+  return std::make_unique<memory_on<clearance::device>>(clearance::device{}, asked);
 }

@@ -22,21 +22,26 @@ class any_points {
   }
 
   std::size_t size() const { return size_; }
-  sample operator[](std::size_t i) const { return of_->at(view_, i); }
+  sample operator[](std::size_t i) const { return of_->at(view_, begin_ + i); }
+  any_points slice(std::size_t begin, std::size_t end) const {
+    any_points piece = *this;
+    piece.begin_ += begin, piece.size_ = end - begin;
+    return piece;
+  }
 
   /// See `point_tile`.
   void read(std::size_t begin, std::size_t count, std::size_t stride, point_tile& to,
             std::uint32_t (&dropped)[drop_reasons]) const {
-    of_->read(view_, begin, count, stride, to, dropped);
+    of_->read(view_, begin_ + begin, count, stride, to, dropped);
   }
   /// See `surveyed_source`.
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const {
-    return of_->survey(view_, begin, box, dropped);
+    return of_->survey(view_, begin_ + begin, box, dropped);
   }
   /// See `unfiltered_source`.
   bool unfiltered() const { return of_->unfiltered(view_); }
   /// See `beyond_range`, `sensor_of` and `rounding_of`.
-  real beyond(std::size_t i, vec3 p) const { return of_->beyond(view_, i, p); }
+  real beyond(std::size_t i, vec3 p) const { return of_->beyond(view_, begin_ + i, p); }
   vec3 sensor() const { return of_->sensor(view_); }
   position_error rounding() const { return of_->rounding(view_); }
 
@@ -72,7 +77,7 @@ class any_points {
       [](const void* v) { return rounding_of(viewed<S>(v)); }};
 
   const functions* of_;
-  std::size_t size_;
+  std::size_t begin_ = 0, size_;
   alignas(16) std::byte view_[112] = {};
 };
 

@@ -186,6 +186,7 @@ struct unseen {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = unseen_result;
+  static constexpr bool of_images = true;  ///< No other source says what it hides.
   template <class On, class PartView>
   class engine;
 
