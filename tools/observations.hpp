@@ -5,7 +5,7 @@
 #include "query_options.hpp"
 
 #include <clearance/io/cloud.hpp>
-#include <clearance/io/depth.hpp>
+#include <clearance/io/png.hpp>
 #include <clearance/points/masked.hpp>
 
 #include <map>

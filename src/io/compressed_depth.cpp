@@ -2,7 +2,6 @@
 #include <clearance/io/compressed_depth.hpp>
 
 #include <clearance/io/bytes.hpp>
-#include <clearance/io/depth.hpp>
 #include <clearance/io/png.hpp>
 
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <clearance/io/cloud_text.hpp>
 #include <clearance/io/ist.hpp>
 #include <clearance/io/packed_part.hpp>
-#include <clearance/io/spheres_yaml.hpp>
 #include <clearance/io/text_file.hpp>
 #include <clearance/io/write_file.hpp>
 

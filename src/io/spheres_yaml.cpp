@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <clearance/io/spheres_yaml.hpp>
+#include <clearance/io/spheres_file.hpp>
 
 #include "io/near_word.hpp"
 #include "io/note_tally.hpp"

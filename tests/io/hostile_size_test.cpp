@@ -8,7 +8,7 @@
 #include <clearance/io/cloud_file.hpp>
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/robot.hpp>
-#include <clearance/io/spheres_yaml.hpp>
+#include <clearance/io/spheres_file.hpp>
 
 #include <ctime>
 

@@ -7,7 +7,6 @@
 #include <clearance/io/certify.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/io/spheres_file.hpp>
-#include <clearance/io/spheres_yaml.hpp>
 #include <clearance/packing/pack.hpp>
 
 #include <bit>

@@ -90,7 +90,6 @@ TESTS = {
     "io/bytes.hpp": ["io/ply", "io/pcd", "io/mesh_damage"],
     "io/robot_bodies.hpp": ["io/packing_cache", "io/spheres"],
     "io/dae_mesh.hpp": ["io/mesh", "io/mesh_damage"],
-    "io/depth.hpp": ["io/depth"],
     "io/digest.hpp": ["io/ist", "io/packing_cache"],
     "io/scene.hpp": ["io/ply_writer", "io/scene"],
     "io/error.hpp": ["io/cloud", "io/read_limits", "io/mapped"],
@@ -122,7 +121,6 @@ TESTS = {
     "io/write_file.hpp": ["io/write_file", "io/ply_writer"],
     "io/xml.hpp": ["io/robot_damage", "io/mesh_damage", "io/hostile_size"],
     "io/cloud_file.hpp": ["io/cloud", "io/text_lines"],
-    "io/spheres_yaml.hpp": ["io/spheres"],
 }
 
 

@@ -3,8 +3,8 @@
 // A ROS CompressedImage that holds depth, as compressed_depth_image_transport writes it: a PNG or RVL image of
 // millimetres, or of inverse depths.
 
-#include <clearance/io/depth.hpp>
 #include <clearance/io/error.hpp>
+#include <clearance/io/png.hpp>
 
 #include <optional>
 #include <string>
