@@ -7,7 +7,7 @@
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/robot/part.hpp>
-#include <clearance/solid/close_mesh.hpp>
+#include <clearance/solid/winding.hpp>
 
 #include <ranges>
 

@@ -55,16 +55,12 @@ class Clearance(ConanFile):
         cmake = CMake(self)
         parts = {f"CLEARANCE_BUILD_{part}": "OFF" for part in ("TESTS", "EXAMPLES", "BENCH", "TOOLS")}
         cmake.configure(variables={**parts, "CLEARANCE_BUILD_IO": "ON" if self.options.io else "OFF"})
-        cmake.build()  # the component io; without it there is nothing to build
+        cmake.build()  # the components solid and io
         cmake.install()
-
-    def package_id(self):
-        if not self.info.options.io:
-            self.info.clear()  # headers alone
 
     def package_info(self):
         # Its own CMake files are found, not ones that Conan makes up: they know the flags of nvcc and the component io.
         self.cpp_info.set_property("cmake_find_mode", "none")
         self.cpp_info.builddirs = ["share/cmake/clearance"]
         self.cpp_info.bindirs = []
-        self.cpp_info.libdirs = ["lib"] if self.options.io else []
+        self.cpp_info.libdirs = ["lib"]

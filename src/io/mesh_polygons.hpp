@@ -3,7 +3,7 @@
 // A mesh as files hold it, with faces of any number of corners, and its triangles.
 
 #include <clearance/io/error.hpp>
-#include <clearance/solid/polygon.hpp>
+#include "solid/polygon.hpp"
 #include <clearance/solid/triangle_mesh.hpp>
 
 #include <Eigen/Geometry>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Caps lie where the surface is missing, and faces cover what they enclose. Areas decide: no surface over a polygon has
 // less than the polygon's vector area, and one that folds has more.
+#include "solid/close_shape.hpp"
+#include "solid/polygon.hpp"
 #include "solid/shapes.hpp"
 #include "support/catch.hpp"
 #include "support/laws.hpp"

@@ -5,7 +5,7 @@
 #include <clearance/io/digest.hpp>
 #include <clearance/io/kept_files.hpp>
 #include <clearance/packing/packing.hpp>
-#include <clearance/solid/closed_mesh.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -5,7 +5,7 @@
 #include <clearance/ground/borrowed.hpp>
 #include <clearance/io/packed_part.hpp>
 #include <clearance/io/packing_cache.hpp>
-#include <clearance/solid/closed_mesh.hpp>
+#include <clearance/solid/close_mesh.hpp>
 
 #include <functional>
 #include <string>

@@ -286,4 +286,8 @@ gap_report measure_gap(const S& s, std::span<const inner_sphere> spheres, double
   return measure_gap(on, steps, s, all.room_in(solid_there<host, S>(on, s).view()), tolerance);
 }
 
+class mesh_solid;
+/// The same for a mesh, compiled once.
+gap_report measure_gap(const mesh_solid& s, std::span<const inner_sphere> spheres, double tolerance = 0.01);
+
 }  // namespace clearance

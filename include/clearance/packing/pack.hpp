@@ -7,18 +7,12 @@
 #include <clearance/packing/round_bodies.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <exception>
+#include <functional>
 #include <limits>
-#include <mutex>
-#include <numbers>
 #include <optional>
 #include <random>
 #include <ranges>
@@ -34,18 +28,7 @@ struct pack_limits {
   double smallest;    ///< The least radius.
 
   /// Throws std::invalid_argument for options or bounds that make no sense.
-  pack_limits(const Eigen::AlignedBox3d& box, const pack_options& options) {
-    if (box.isEmpty() || !(box.diagonal().norm() > 0) || !std::isfinite(box.diagonal().norm()))
-      throw std::invalid_argument("clearance::pack: the solid's bounds are empty or not finite");
-    for (const double x : {options.smallest_radius, options.gap_target, options.seconds})
-      if (!(x >= 0))
-        throw std::invalid_argument("clearance::pack: smallest_radius, gap_target and seconds must not be negative");
-    if (!(options.gap_per_radius > 0)) throw std::invalid_argument("clearance::pack: gap_per_radius must be positive");
-    if (!(options.gap_tolerance > 0)) throw std::invalid_argument("clearance::pack: gap_tolerance must be positive");
-    scale = box.diagonal().norm() + box.center().norm();
-    least_room = 1e-6 * box.diagonal().norm();
-    smallest = std::max(options.smallest_radius, least_room);
-  }
+  pack_limits(const Eigen::AlignedBox3d& box, const pack_options& options);
 
   /// Why there is nothing left to divide.
   pack_stop exhausted() const { return smallest > least_room ? pack_stop::smallest_radius : pack_stop::no_room; }
@@ -75,12 +58,7 @@ class stop_check {
 };
 
 /// Sorts the spheres and computes the totals.
-inline void arrange(packing& p, double volume) {
-  std::stable_sort(p.spheres.begin(), p.spheres.end(),
-                   [](const auto& a, const auto& b) { return a.radius > b.radius; });
-  if (!p.spheres.empty()) p.radius_max = p.spheres.front().radius, p.radius_min = p.spheres.back().radius;
-  for (const inner_sphere& s : p.spheres) p.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(s.radius), 3) / volume;
-}
+void arrange(packing& p, double volume);
 
 /// Fills a solid with spheres, the largest first. The room at a point is its distance to the surface and to the spheres
 /// so far. Between two points it changes by at most their distance, so in a cube it is at most that of the middle plus
@@ -243,96 +221,22 @@ struct solid_error : std::invalid_argument {
 };
 
 /// Calls f(0) .. f(n-1) once each, on `threads` threads of TBB (0: TBB decides); for n = 1 from this thread.
-template <class F>
-void for_each_packing(std::size_t n, unsigned threads, const F& f) {
-  const auto all = [&] {
-    // They get their own context: if the caller's tasks were cancelled, loops inside would do nothing, and a packing
-    // would never end.
-    tbb::task_group_context own(tbb::task_group_context::isolated);
-    // A thread that waits in a packing must not begin another, which would hold up the first.
-    const auto one = [&](std::size_t i) { tbb::this_task_arena::isolate([&] { f(i); }); };
-    tbb::parallel_for(std::size_t(0), n, one, tbb::simple_partitioner{}, own);
-  };
-  if (threads == 0) return all();
-  tbb::task_arena arena(int(threads), 1);
-  arena.execute(all);
-}
-
-/// One set of options for several packings at once. One thread at a time calls its functions, progress is the total,
-/// and cancelling cancels all.
-class shared_pack_options {
- public:
-  shared_pack_options(const pack_options& options, std::size_t packings)
-      : options_(options),
-        of_(options.count > std::numeric_limits<std::size_t>::max() / packings ? std::numeric_limits<std::size_t>::max()
-                                                                               : options.count * packings),
-        done_(packings, 0) {}
-
-  /// Options for packing i. It uses the threads of the place where it runs.
-  pack_options one(std::size_t i) {
-    pack_options own = options_;
-    own.threads = 0;
-    if (options_.progress) own.progress = [this, i](std::size_t done, std::size_t) { report(i, done); };
-    own.cancelled = [this] { return stopped_ || (options_.cancelled && asked()); };
-    return own;
-  }
-  void finished(std::size_t i) {
-    const std::lock_guard alone(mutex_);
-    done_[i] = options_.count;
-  }
-  void stop() { stopped_ = true; }
-
- private:
-  void report(std::size_t i, std::size_t done) {
-    const std::lock_guard alone(mutex_);
-    done_[i] = done;
-    std::size_t sum = 0;
-    for (const std::size_t each : done_) sum += std::min(each, of_ - sum);
-    options_.progress(sum, of_);
-  }
-  bool asked() {
-    const std::lock_guard alone(mutex_);
-    if (!stopped_ && options_.cancelled()) stopped_ = true;
-    return stopped_;
-  }
-
-  const pack_options& options_;
-  const std::size_t of_;
-  std::vector<std::size_t> done_;  // by packing; `count` once it has finished, however few it made
-  std::atomic<bool> stopped_ = false;
-  std::mutex mutex_;
-};
+void for_each_packing(std::size_t n, unsigned threads, const std::function<void(std::size_t)>& f);
 
 /// Calls `make(i, options)` for i = 0 .. n-1: packings side by side, on `options.threads` threads in all. If some
 /// throw, the others are cancelled, and the error of the lowest i is thrown, a std::invalid_argument as solid_error.
+void make_side_by_side(std::size_t n, const pack_options& options,
+                       const std::function<void(std::size_t, const pack_options&)>& make);
+/// The same, and what they return.
 template <class Make>
 auto side_by_side(std::size_t n, const pack_options& options, const Make& make) {
   std::vector<std::invoke_result_t<const Make&, std::size_t, const pack_options&>> made(n);
-  if (n == 0) return made;
-  shared_pack_options shared(options, n);
-  std::vector<std::exception_ptr> errors(n);
-  for_each_packing(n, options.threads, [&](std::size_t i) {
-    try {
-      made[i] = make(i, shared.one(i));
-      shared.finished(i);
-    } catch (...) {
-      errors[i] = std::current_exception();
-      shared.stop();
-    }
-  });
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!errors[i]) continue;
-    try {
-      std::rethrow_exception(errors[i]);
-    } catch (const std::invalid_argument& error) {
-      throw solid_error(i, error.what());
-    }
-  }
+  make_side_by_side(n, options, [&](std::size_t i, const pack_options& own) { made[i] = make(i, own); });
   return made;
 }
 
 /// Packs spheres into a solid. The same options and seed give the same packing on any number of threads. Throws
-/// std::invalid_argument for options or bounds that make no sense.
+/// std::invalid_argument for options or bounds that make no sense. Link clearance::solid.
 template <solid S>
 packing pack(const S& s, const pack_options& options = {}) {
   packing made;
@@ -344,10 +248,10 @@ packing pack(const S& s, const pack_options& options = {}) {
   return made;
 }
 
+/// The same for a mesh, compiled once.
+packing pack(const mesh_solid& s, const pack_options& options = {});
 /// Closes the mesh first; throws std::invalid_argument if it has no inside.
-inline packing pack(const triangle_mesh& mesh, const pack_options& options = {}) {
-  return pack(mesh_solid(mesh), options);
-}
+packing pack(const triangle_mesh& mesh, const pack_options& options = {});
 
 /// A range of solids, or of meshes.
 template <class R>

@@ -45,25 +45,4 @@ struct packing {
   std::string reason() const;
 };
 
-inline std::string packing::reason() const {
-  const auto mm = [](double metres) { return std::to_string(metres * 1000) + " mm"; };
-  switch (stopped_by) {
-    case pack_stop::count:
-      return "the number of spheres was reached";
-    case pack_stop::no_room:
-      return "no further sphere larger than 1e-6 of the solid fits";
-    case pack_stop::smallest_radius:
-      return "no further sphere as large as the smallest radius fits";
-    case pack_stop::gap:
-      return "the gap target was reached";
-    case pack_stop::time:
-      return "the time was up";
-    case pack_stop::cancelled:
-      return "it was cancelled";
-    case pack_stop::search_limit:
-      return "the search for room grew too large; a further sphere is smaller than " + mm(room);
-  }
-  return {};
-}
-
 }  // namespace clearance

@@ -2,319 +2,62 @@
 #pragma once
 // Finds the inside of a mesh such as robots come with, whatever is wrong with it, and says how well it is known.
 
-#include <clearance/solid/close_shape.hpp>
-#include <clearance/solid/closed_mesh.hpp>
-#include <clearance/solid/flood.hpp>
-#include <clearance/solid/polygon.hpp>
-#include <clearance/solid/winding.hpp>
+#include <clearance/solid/enclosure.hpp>
+#include <clearance/solid/triangle_mesh.hpp>
 
 namespace clearance {
 
-/// Bodies with a winding number below 0 somewhere: they cross themselves, and another body's number could cancel
-/// theirs. Rays find them if they are at least a hundredth of the part.
-inline std::vector<bool> cancelling_bodies(const closed_mesh& mesh, const basic_winding<double>& w,
-                                           std::span<const std::uint32_t> body) {
-  std::vector<bool> cancels(mesh.encloses.size(), false);
-  std::vector<std::int32_t> number(cancels.size(), 0);
-  std::vector<std::uint32_t> below;  // bodies whose number fell below 0 since the last piece of some length
-  for_each_ray(w, affordable_rays(w, 128), [&](std::span<const ray_hit> hits) {
-    for (std::size_t k = 0; k < hits.size(); ++k) {
-      const std::uint32_t its = body[hits[k].triangle];
-      number[its] -= hits[k].sign;
-      if (number[its] == -1 && hits[k].sign == 1) below.push_back(its);
-      if (k + 1 == hits.size() || !(hits[k + 1].x - hits[k].x > least_piece(w))) continue;
-      for (const std::uint32_t b : below)
-        if (number[b] < 0) cancels[b] = true;
-      below.clear();
-    }
-    for (const ray_hit& hit : hits) number[body[hit.triangle]] = 0;
-    below.clear();
-  });
-  return cancels;
-}
-
-/// What a flood from outside does not reach in a mesh's shapes.
-class second_opinion {
- public:
-  /// `shape`: the shape of each triangle, caps included. `strays`: by shape, caps that are no surface.
-  second_opinion(const closed_mesh& mesh, std::span<const std::uint32_t> shape, std::vector<polygon_triangles> strays)
-      : mesh_(mesh), strays_of_(std::move(strays)), triangles_of_(strays_of_.size()) {
-    for (std::uint32_t i = 0; i < shape.size(); ++i) triangles_of_[shape[i]].push_back(mesh.surface.triangles[i]);
-  }
-
-  /// Is there a cube that a flood around this shape does not reach, but that is outside by the winding numbers? Coarse,
-  /// because it only checks what caps closed.
-  bool contradicts(std::uint32_t shape, const basic_winding<double>& w) const {
-    Eigen::AlignedBox3d box;
-    extend(box, shape);
-    const enclosure_grid grid = grid_around(box, coarse_cubes);
-    const std::size_t row = grid.size[0], layer = row * grid.size[1];
-    const std::vector<std::uint32_t> bits = flooded(grid, shape, false);
-    for (std::size_t i = 0; i < layer * grid.size[2]; ++i)
-      if (bits[i / 32] >> i % 32 & 1) {
-        const Eigen::Vector3d cube(i % row, i / row % grid.size[1], i / layer);
-        const Eigen::Vector3d p = grid.low + grid.cube * (cube + Eigen::Vector3d::Constant(0.5));
-        if (!w.view().inside(p.x(), p.y(), p.z())) return true;
-      }
-    return false;
-  }
-
-  /// All cubes that floods around each of these shapes do not reach. `cube` is set even if nothing is enclosed.
-  enclosure_grid enclosed(const std::vector<bool>& shapes) const {
-    Eigen::AlignedBox3d box;
-    for (std::uint32_t s = 0; s < shapes.size(); ++s)
-      if (shapes[s]) extend(box, s);
-    const auto floods = double(std::count(shapes.begin(), shapes.end(), true));
-    enclosure_grid grid = grid_around(box, fine_cubes * std::min(1.0, most_fine / floods));
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t s = 0; s < shapes.size(); ++s) {
-      if (!shapes[s]) continue;
-      add(flooded(grid, s, true), all);
-    }
-    if (std::any_of(all.begin(), all.end(), [](std::uint32_t word) { return word != 0; })) grid.bits = std::move(all);
-    return grid;
-  }
-
- private:
-  // 50 and 200 cubes along each side of a cube. A fine flood takes a twentieth of a second; for many shapes they are
-  // coarser.
-  static constexpr double coarse_cubes = 1 << 17, fine_cubes = 1 << 23, most_fine = 16;
-
-  std::array<Eigen::Vector3d, 3> corners(const std::array<std::uint32_t, 3>& t) const {
-    return {mesh_.surface.vertices[t[0]], mesh_.surface.vertices[t[1]], mesh_.surface.vertices[t[2]]};
-  }
-  void extend(Eigen::AlignedBox3d& box, std::uint32_t shape) const {
-    for (const auto& t : triangles_of_[shape])
-      for (const auto& c : corners(t)) box.extend(c);
-  }
-  /// What is enclosed if stray caps are no walls, or if they are: they close holes, but may divide the inside.
-  std::vector<std::uint32_t> flooded(const enclosure_grid& grid, std::uint32_t shape, bool passages) const {
-    flood from_outside(grid, passages);
-    for (const auto& t : triangles_of_[shape]) from_outside.add(corners(t));
-    std::vector<std::uint32_t> bits = from_outside.enclosed();
-    if (strays_of_[shape].empty()) return bits;
-    for (const auto& t : strays_of_[shape]) from_outside.add(corners(t));
-    add(from_outside.enclosed(), bits);
-    return bits;
-  }
-  static void add(const std::vector<std::uint32_t>& some, std::vector<std::uint32_t>& bits) {
-    bits.resize(some.size());
-    for (std::size_t i = 0; i < some.size(); ++i) bits[i] |= some[i];
-  }
-
-  const closed_mesh& mesh_;
-  std::vector<polygon_triangles> strays_of_, triangles_of_;
+struct close_options {
+  bool orient = true;  ///< Turn triangles that disagree with their neighbours.
+  bool cap = true;     ///< Close boundary loops. Without caps an open mesh has no certain inside.
 };
 
-namespace detail {
-
-/// Closes a part's shapes one by one, joins them again, and judges how well the inside is then known.
-class mesh_closer {
- public:
-  mesh_closer(const triangle_mesh& mesh, const close_options& options) : mesh_(mesh), options_(options) {}
-
-  closed_mesh close() && {
-    std::vector<std::uint32_t> first = mesh_.shapes;
-    if (first.empty()) first.push_back(0);
-    first.push_back(std::uint32_t(mesh_.triangles.size()));
-    std::vector<shape_surface> shapes;
-    for (std::size_t k = 0; k + 1 < first.size(); ++k)
-      if (first[k] < first[k + 1]) shapes.push_back(close_shape(first[k], first[k + 1]));
-    out_.loaded = std::uint32_t(mesh_.triangles.size());
-    out_.closed =
-        options_.cap || std::all_of(shapes.begin(), shapes.end(), [](const auto& s) { return s.rims.empty(); });
-    for (bool caps : {false, true}) {
-      std::uint32_t vertex = 0, body = 0;
-      for (std::uint32_t k = 0; k < shapes.size(); ++k) {
-        append(shapes[k], k, caps, vertex, body);
-        vertex += std::uint32_t(shapes[k].mesh.vertices.size());
-        body += std::uint32_t(shapes[k].bodies.one_sided.size());
-      }
-    }
-    for (const shape_surface& s : shapes)
-      out_.surface.vertices.insert(out_.surface.vertices.end(), s.mesh.vertices.begin(), s.mesh.vertices.end());
-    const std::size_t kept = out_.surface.vertices.size();  // several shapes may use a vertex
-    out_.welded = std::uint32_t(mesh_.vertices.size() - std::min(kept, mesh_.vertices.size()));
-    measure();
-    if (!(out_.area > 0))
-      throw std::invalid_argument(
-          "clearance: the mesh is degenerate: none of its triangles keeps an area once near vertices are one");
-    if (out_.closed) judge(std::uint32_t(shapes.size()));
-    return std::move(out_);
-  }
-
- private:
-  shape_surface close_shape(std::uint32_t first, std::uint32_t last) {
-    shape_surface s = weld_cracks(open_surface(weld(part_of(first, last)), options_), options_);
-    loaded_.push_back(s.mesh.triangles.size());
-    for (std::size_t i = 0; i < s.mesh.triangles.size(); ++i) {
-      const auto& t = s.mesh.triangles[i];
-      out_.duplicate += !s.counts[i] && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-    }
-    out_.flipped += s.bodies.flipped, out_.one_sided_area += s.bodies.one_sided_area;
-    if (options_.cap) out_.caps.loops += add_caps(s, patience_);
-    out_.tolerance = std::max(out_.tolerance, s.moved);
-    turn_out(s);
-    return s;
-  }
-
-  /// These triangles, with the range of vertices that contains theirs.
-  triangle_mesh part_of(std::uint32_t first, std::uint32_t last) const {
-    std::uint32_t low = ~0u, high = 0;
-    for (std::uint32_t i = first; i < last; ++i)
-      for (const std::uint32_t v : mesh_.triangles[i]) low = std::min(low, v), high = std::max(high, v);
-    triangle_mesh part;
-    part.vertices.assign(mesh_.vertices.begin() + low, mesh_.vertices.begin() + high + 1);
-    part.triangles.assign(mesh_.triangles.begin() + first, mesh_.triangles.begin() + last);
-    for (auto& t : part.triangles)
-      for (std::uint32_t& v : t) v -= low;
-    return part;
-  }
-
-  /// Makes bodies face outwards for the winding number, however they were loaded. A body so flat that rounding decides
-  /// encloses nothing.
-  void turn_out(shape_surface& s) {
-    const std::vector<double> volumes = body_volumes(s);
-    std::vector<double> areas(volumes.size(), 0);
-    std::vector<Eigen::AlignedBox3d> boxes(volumes.size());
-    Eigen::AlignedBox3d all;
-    for (std::size_t i = 0; i < s.mesh.triangles.size(); ++i) {
-      const auto& t = s.mesh.triangles[i];
-      if (!s.counts[i]) continue;
-      const std::uint32_t b = s.bodies.body[i];
-      areas[b] += area(s.mesh, t);
-      for (const std::uint32_t v : t) boxes[b].extend(s.mesh.vertices[v]), all.extend(s.mesh.vertices[v]);
-      if (volumes[b] < 0) s.counts[i] = -1;
-    }
-    for (std::size_t b = 0; b < volumes.size(); ++b) {
-      const double size = boxes[b].isEmpty() ? 0 : boxes[b].diagonal().norm();
-      const bool open = !s.open.empty() && s.open[b];
-      out_.encloses.push_back(!open && std::abs(volumes[b]) > 1e-9 * size * areas[b]);
-      const bool nothing = areas[b] <= 1e-12 * all.diagonal().squaredNorm();  // slivers at joints
-      out_.sheets += !open && !out_.encloses.back() && !nothing;
-      unclean_.push_back(s.bodies.one_sided[b] || (!out_.encloses.back() && !nothing));
-      capped_.push_back(false);
-      open_.push_back(open);
-    }
-    const std::size_t before = out_.encloses.size() - volumes.size();
-    for (const body_rim& rim : s.rims) capped_[before + rim.body] = out_.encloses[before + rim.body];
-  }
-
-  static double area(const triangle_mesh& m, const std::array<std::uint32_t, 3>& t) {
-    return (m.vertices[t[1]] - m.vertices[t[0]]).cross(m.vertices[t[2]] - m.vertices[t[0]]).norm() / 2;
-  }
-
-  /// Appends the shape's triangles as loaded, or those of its caps.
-  void append(const shape_surface& s, std::uint32_t number, bool caps, std::uint32_t vertex, std::uint32_t body) {
-    const std::size_t loaded = loaded_[number];
-    for (std::size_t i = caps ? loaded : 0; i < (caps ? s.mesh.triangles.size() : loaded); ++i) {
-      auto t = s.mesh.triangles[i];
-      for (std::uint32_t& v : t) v += vertex;
-      out_.surface.triangles.push_back(t);
-      out_.counts.push_back(s.open.empty() || !s.open[s.bodies.body[i]] ? s.counts[i] : 0);
-      out_.body.push_back(body + s.bodies.body[i]);
-      shape_.push_back(number);
-      repeats_.push_back(s.counts[i] == 0);
-    }
-    if (!caps) return;
-    walls_.push_back(s.strays);
-    for (auto& t : walls_.back())
-      for (std::uint32_t& v : t) v += vertex;
-  }
-
-  void measure() {
-    for (std::size_t i = 0; i < out_.surface.triangles.size(); ++i) {
-      const double a = area(out_.surface, out_.surface.triangles[i]);
-      (i < out_.loaded ? out_.area : out_.caps.area) += a;
-      out_.degenerate += i < out_.loaded && !(a > 0);
-    }
-  }
-
-  /// Trusts winding numbers where bodies are clean. Elsewhere a flood adds what else is inside, to within the size of
-  /// its cubes.
-  void judge(std::uint32_t shapes) {
-    std::vector<bool> unclean(shapes, false), capped(shapes, false);
-    const second_opinion flooded(out_, shape_, walls_);
-    forgive_one_flat_sheet(shapes);
-    if (std::any_of(out_.encloses.begin(), out_.encloses.end(), [](bool e) { return e; })) {
-      std::vector<std::uint32_t> body;
-      const auto w = make_winding<double>(out_, &body);
-      const std::vector<bool> cancels = cancelling_bodies(out_, w, body);
-      for (std::size_t b = 0; b < cancels.size(); ++b) unclean_[b] = unclean_[b] || cancels[b];
-      mark(unclean_, unclean), mark(capped_, capped);
-      for (std::uint32_t k = 0; k < shapes; ++k)
-        if (capped[k] && !unclean[k] && flooded.contradicts(k, w)) unclean[k] = true;
-    } else {
-      mark(unclean_, unclean);
-    }
-    const bool encloses = std::find(out_.encloses.begin(), out_.encloses.end(), true) != out_.encloses.end();
-    out_.inside = !encloses                                                          ? inside_by::nothing
-                  : std::find(capped_.begin(), capped_.end(), true) == capped_.end() ? inside_by::closed
-                                                                                     : inside_by::caps;
-    if (std::find(unclean.begin(), unclean.end(), true) == unclean.end()) return;
-    out_.enclosed = flooded.enclosed(unclean);
-    if (encloses || !out_.enclosed.bits.empty()) out_.inside = inside_by::flood;
-    // The flood does not see anything thinner than two cubes, and the cubes at a region's walls do not count as
-    // enclosed.
-    out_.tolerance += flood::width * out_.enclosed.cube;
-  }
-
-  void mark(const std::vector<bool>& bodies, std::vector<bool>& shapes) const {
-    for (std::size_t i = 0; i < out_.body.size(); ++i)
-      if (!repeats_[i] && bodies[out_.body[i]]) shapes[shape_[i]] = true;
-  }
-
-  /// A single flat sheet encloses nothing, whatever bodies are beside it. A shape with no other unclean body is clean.
-  void forgive_one_flat_sheet(std::uint32_t shapes) {
-    constexpr std::uint32_t none = ~0u, several = ~1u;
-    std::vector<std::uint32_t> sheet(shapes, none);  // the only unclean body of a shape
-    std::vector<polygon_triangles> triangles(shapes);
-    for (std::size_t i = 0; i < out_.body.size(); ++i) {
-      const std::uint32_t b = out_.body[i], k = shape_[i];
-      if (repeats_[i] || !unclean_[b] || sheet[k] == several) continue;
-      sheet[k] = sheet[k] == none || sheet[k] == b ? b : several;
-      triangles[k].push_back(out_.surface.triangles[i]);
-    }
-    for (std::uint32_t k = 0; k < shapes; ++k)
-      if (const std::uint32_t b = sheet[k]; b != none && b != several && !open_[b] && flat(triangles[k]))
-        unclean_[b] = false;
-  }
-  bool flat(const polygon_triangles& triangles) const {
-    const auto& v = out_.surface.vertices;
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero(), origin = normal;
-    double most = 0, height = 0, size = 0;
-    for (const auto& t : triangles) {
-      const Eigen::Vector3d n = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
-      if (n.norm() > most) most = n.norm(), normal = n.normalized(), origin = v[t[0]];
-    }
-    for (const auto& t : triangles)
-      for (const std::uint32_t c : t) {
-        height = std::max(height, std::abs(normal.dot(v[c] - origin)));
-        size = std::max(size, (v[c] - origin).norm());
-      }
-    return height <= 1e-9 * size;
-  }
-
-  const triangle_mesh& mesh_;
-  const close_options& options_;
-  closed_mesh out_;
-  std::vector<std::size_t> loaded_;       // by shape: triangles that are not caps
-  std::vector<std::uint32_t> shape_;      // by triangle
-  std::vector<bool> repeats_;             // by triangle: it lies on others, or has a corner twice
-  std::vector<bool> unclean_, capped_;    // by body
-  std::vector<bool> open_;                // by body: it has a cap that is none
-  std::vector<polygon_triangles> walls_;  // by shape: such caps
-  std::size_t patience_ = 1'000'000'000;  // looks at corners that caps may take: a few seconds
+struct cap_report {
+  std::uint32_t loops = 0;
+  double area = 0;  ///< Square metres.
 };
 
-}  // namespace detail
+/// How the inside of a part is known; its least certain body decides.
+enum class inside_by : std::uint8_t {
+  nothing,  ///< Caps were declined, or nothing has a volume: no inside.
+  closed,   ///< Every body was closed as loaded.
+  caps,     ///< Some body is closed by caps over its holes.
+  flood,  ///< Some body is not a clean solid: what a flood of a grid from outside does not reach counts as inside, too.
+};
+
+const char* to_string(inside_by by);
+
+/// A part's surface: its triangles as loaded, with welded corners, followed by its caps.
+struct closed_mesh {
+  triangle_mesh surface;  ///< Triangle i < loaded is triangle i of the input (perhaps turned); the rest are caps.
+  std::uint32_t loaded = 0;
+  /// By triangle, how it counts for the winding number: 1 as it is, -1 turned (its body faces inwards), 0 not at all
+  /// (it repeats others, or no cap closes its body). The number is then above 0 in every body.
+  std::vector<std::int8_t> counts;
+  std::vector<std::uint32_t> body;  ///< By triangle: the connected surface to which it belongs.
+  std::vector<bool> encloses;       ///< By body: does it enclose a volume?
+  bool closed = false;              ///< Winding numbers are integers everywhere.
+  inside_by inside = inside_by::nothing;
+  double tolerance = 0;     ///< Within this distance of the surface, in metres, it is uncertain what is inside.
+  enclosure_grid enclosed;  ///< The cubes that the flood did not reach; empty if there was none.
+  cap_report caps;
+  std::uint32_t welded = 0;      ///< Vertices that were merged into an earlier one, or that no triangle used.
+  std::uint32_t degenerate = 0;  ///< Triangles without area. Kept.
+  std::uint32_t duplicate = 0;   ///< Triangles that lie on earlier ones. Kept.
+  std::uint32_t sheets = 0;      ///< Bodies that enclose nothing.
+  std::uint32_t flipped = 0;     ///< Triangles that were turned to agree with their neighbours.
+  double one_sided_area = 0;     ///< Area of bodies with only one side, such as a Moebius strip. Square metres.
+  double area = 0;               ///< Of all loaded triangles.
+};
+
+/// Throws std::invalid_argument if the members of a mesh that close_mesh did not make contradict one another.
+void check(const closed_mesh& mesh);
 
 /// Closes a mesh such as robots come with: open, badly oriented, not manifold, made of several shells. Each connected
 /// body of each shape is closed separately; a point is inside if it is in any of them. Nothing is dropped; what was
-/// found is counted. Throws std::invalid_argument if this is no mesh at all (see check_mesh).
-inline closed_mesh close_mesh(const triangle_mesh& mesh, const close_options& options = {}) {
-  check_mesh(mesh);
-  return detail::mesh_closer(mesh, options).close();
-}
+/// found is counted. Throws std::invalid_argument if this is no mesh at all: no triangles, an index out of range, a
+/// coordinate that is not finite or beyond 1e15, no triangle with an area, or shapes that are not all triangles in
+/// their order. Compiled: link clearance::solid.
+closed_mesh close_mesh(const triangle_mesh& mesh, const close_options& options = {});
 
 }  // namespace clearance

@@ -59,21 +59,4 @@ struct enclosure_grid {
   }
 };
 
-/// A grid of at most about `cubes` cubes around a box, with a spare layer on every side. Rows along x fill whole words.
-inline enclosure_grid grid_around(const Eigen::AlignedBox3d& box, double cubes) {
-  enclosure_grid g;
-  const Eigen::Vector3d extent = box.sizes();
-  const auto count = [&](double cube) {
-    double all = 1;
-    for (int k = 0; k < 3; ++k) all *= std::ceil(extent[k] / cube) + 3;
-    return all;
-  };
-  g.cube = extent.maxCoeff() / 1024;
-  while (count(g.cube) > cubes) g.cube *= 1.02;
-  g.low = box.min() - Eigen::Vector3d::Constant(1.5 * g.cube);
-  for (int k = 0; k < 3; ++k) g.size[k] = std::uint32_t(std::ceil(extent[k] / g.cube)) + 3;
-  g.size[0] = (g.size[0] + 31) / 32 * 32;
-  return g;
-}
-
 }  // namespace clearance

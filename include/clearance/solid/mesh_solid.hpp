@@ -8,7 +8,8 @@
 #include <clearance/solid/solid.hpp>
 #include <clearance/solid/winding.hpp>
 
-#include <numeric>
+#include <limits>
+#include <utility>
 
 namespace clearance {
 
@@ -57,38 +58,20 @@ struct mesh_solid_copy {
 };
 
 /// The solid inside a closed mesh, in double: exact distances to its surface with caps, and the inside that close_mesh
-/// found. Surfaces inside overlapping shells count as surface, so no sphere crosses one.
+/// found. Surfaces inside overlapping shells count as surface, so no sphere crosses one. Compiled: link
+/// clearance::solid.
 class mesh_solid {
  public:
   /// Throws std::invalid_argument if the mesh is not closed, or has no inside, as a single sheet or a Moebius strip.
-  explicit mesh_solid(closed_mesh mesh) : mesh_solid(std::move(mesh), surface_too{}) {
-    if (mesh_.one_sided_area > 0.5 * mesh_.area)
-      throw std::invalid_argument(
-          "clearance: the mesh has no inside: its surface has only one side, as a Moebius strip");
-    if (!(enclosed_.volume > 1e-9 * bounds_.diagonal().norm() * mesh_.area))
-      throw std::invalid_argument("clearance: the mesh has no inside: it is a sheet, and its " +
-                                  std::to_string(mesh_.loaded) + " triangles and their caps enclose no volume");
-  }
-  explicit mesh_solid(const triangle_mesh& mesh) : mesh_solid(close_mesh(mesh)) {}
+  explicit mesh_solid(closed_mesh mesh);
+  explicit mesh_solid(const triangle_mesh& mesh);
 
   /// A solid even if the mesh encloses nothing: its surface. No sphere fits into it, but distances and gaps work.
   static mesh_solid of_surface(closed_mesh mesh) { return mesh_solid(std::move(mesh), surface_too{}); }
 
  private:
   struct surface_too {};
-  mesh_solid(closed_mesh mesh, surface_too) : mesh_(std::move(mesh)) {
-    winding_ = make_winding<double>(mesh_);
-    std::vector<Eigen::AlignedBox3d> boxes;
-    for (const auto& t : mesh_.surface.triangles) {
-      triangles_.emplace_back(mesh_.surface.vertices[t[0]], mesh_.surface.vertices[t[1]], mesh_.surface.vertices[t[2]]);
-      boxes.push_back(triangles_.back().box());
-      bounds_.extend(boxes.back());
-    }
-    enclosed_ = enclosed_volume(winding_);
-    if (!mesh_.enclosed.bits.empty())
-      enclosed_.volume = std::max(enclosed_.volume, mesh_.enclosed.volume()), enclosed_.exact = false;
-    tree_ = box_tree(boxes);
-  }
+  mesh_solid(closed_mesh mesh, surface_too);
 
  public:
   const closed_mesh& mesh() const { return mesh_; }
@@ -112,29 +95,14 @@ class mesh_solid {
   }
 
   double tolerance() const { return mesh_.tolerance; }
-  double volume() const { return enclosed_.volume; }
+  double volume() const { return volume_; }
   /// Do shells overlap? Then some winding numbers are above 1.
-  bool overlaps() const { return enclosed_.overlaps; }
+  bool overlaps() const { return overlaps_; }
 
   const std::vector<Eigen::Vector3d>& corners() const { return mesh_.surface.vertices; }
 
   /// Points spread evenly by area, the same on every call.
-  std::vector<Eigen::Vector3d> surface_points(std::size_t count) const {
-    std::vector<double> until(triangles_.size());
-    double sum = 0;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) until[i] = sum += triangles_[i].area();
-    std::vector<Eigen::Vector3d> points;
-    points.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at =
-          std::size_t(std::upper_bound(until.begin(), until.end(), sum * ((i + 0.5) / count)) - until.begin());
-      const exact_triangle& t = triangles_[std::min(at, triangles_.size() - 1)];
-      double u = std::fmod((i + 1) * 0.7548776662466927, 1.0), v = std::fmod((i + 1) * 0.5698402909980532, 1.0);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      points.push_back(t.corner(0) + u * (t.corner(1) - t.corner(0)) + v * (t.corner(2) - t.corner(0)));
-    }
-    return points;
-  }
+  std::vector<Eigen::Vector3d> surface_points(std::size_t count) const;
 
  private:
   closed_mesh mesh_;
@@ -142,13 +110,12 @@ class mesh_solid {
   std::vector<exact_triangle> triangles_;
   box_tree tree_;
   Eigen::AlignedBox3d bounds_;
-  enclosed enclosed_;
+  double volume_ = 0;
+  bool overlaps_ = false;
 };
 
 /// Is there an inside for inner spheres to fill?
-inline bool has_inside(const closed_mesh& mesh) {
-  return mesh.inside != inside_by::nothing && mesh.one_sided_area <= 0.5 * mesh.area;
-}
+bool has_inside(const closed_mesh& mesh);
 
 static_assert(solid<mesh_solid> && solid_view<mesh_solid_view>);
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Is a point inside a closed mesh, and how much does the mesh enclose? Rays count how often the surface winds round.
+// Is a point inside a closed mesh? Rays count how often the surface winds round.
 
 #include <clearance/backends/host.hpp>
 #include <clearance/ground/config.hpp>
 #include <clearance/ground/math.hpp>
-#include <clearance/solid/closed_mesh.hpp>
+#include <clearance/solid/close_mesh.hpp>
 #include <clearance/solid/enclosure.hpp>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace clearance {
 
@@ -156,219 +155,12 @@ struct basic_winding {
 template <backend B = host>
 using winding = basic_winding<real, B>;
 
-namespace detail {
-
-/// The grid over (y, z) of a winding test, with the triangles over each cell.
-template <class T>
-class winding_grid {
- public:
-  explicit winding_grid(basic_winding<T>& w)
-      : w_(w), g_(w.grid), y_(double(g_.high[1]) - g_.low[1]), z_(double(g_.high[2]) - g_.low[2]) {
-    choose_cells();
-    fill_lists();
-  }
-
- private:
-  struct rectangle {
-    std::uint32_t left, right, below, above;
-  };
-
-  /// About as many cells as triangles, nearly square. A flat extent gets one row or column. Fewer cells if large
-  /// triangles above one another would fill the lists.
-  void choose_cells() {
-    for (double wanted = std::clamp(double(w_.triangles.size()), 1.0, 65536.0); wanted >= 1; wanted /= 4) {
-      divide_into(wanted);
-      double total = 0;
-      for (const auto& t : w_.triangles) {
-        const rectangle r = covered(t);
-        total += double(r.right - r.left + 1) * (r.above - r.below + 1);
-      }
-      if (total <= 1e6 + 64 * double(w_.triangles.size())) break;
-    }
-  }
-  void divide_into(double wanted) {
-    const auto along = [&](double here, double there) {
-      if (!(here > 0)) return 1.0;
-      return std::clamp(std::ceil(there > 0 ? std::sqrt(wanted * here / there) : 256.0), 1.0, 1024.0);
-    };
-    const auto per = [](double count, double extent) {
-      const double p = extent > 0 ? count / extent : 0;
-      return T(p <= double(std::numeric_limits<T>::max()) ? p : 0);  // near the smallest number: one cell
-    };
-    g_.columns = std::uint32_t(along(y_, z_)), g_.rows = std::uint32_t(along(z_, y_));
-    g_.per_y = per(g_.columns, y_), g_.per_z = per(g_.rows, z_);
-  }
-  rectangle covered(const crossing_triangle<T>& t) const {
-    const auto& v = t.v;
-    return rectangle{g_.column(std::min({v[0][1], v[1][1], v[2][1]})), g_.column(std::max({v[0][1], v[1][1], v[2][1]})),
-                     g_.row(std::min({v[0][2], v[1][2], v[2][2]})), g_.row(std::max({v[0][2], v[1][2], v[2][2]}))};
-  }
-
-  /// Is the cell beyond one side of the triangle? It is inflated first, because a point's cell is computed in T.
-  bool misses(const crossing_triangle<T>& t, std::uint32_t column, std::uint32_t row) const {
-    const double cell_y = y_ / g_.columns, cell_z = z_ / g_.rows;
-    const double half_y = cell_y / 2 + 8 * double(std::numeric_limits<T>::epsilon()) * y_;
-    const double half_z = cell_z / 2 + 8 * double(std::numeric_limits<T>::epsilon()) * z_;
-    const double mid_y = (column + 0.5) * cell_y, mid_z = (row + 0.5) * cell_z;
-    for (int j = 0; j < 3; ++j) {
-      const T(&a)[3] = t.v[j], (&b)[3] = t.v[(j + 1) % 3], (&c)[3] = t.v[(j + 2) % 3];
-      const double ny = double(a[2]) - b[2], nz = double(b[1]) - a[1];
-      const double reach = (std::abs(ny) * half_y + std::abs(nz) * half_z) * (1 + 1e-9);
-      const double cell = ny * (mid_y - (double(a[1]) - g_.low[1])) + nz * (mid_z - (double(a[2]) - g_.low[2]));
-      const double corner = ny * (double(c[1]) - a[1]) + nz * (double(c[2]) - a[2]);
-      if (corner >= 0 ? cell < -reach : cell > reach) return true;
-    }
-    return false;
-  }
-
-  void fill_lists() {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cell, triangle
-    for (std::uint32_t i = 0; i < w_.triangles.size(); ++i) {
-      const rectangle r = covered(w_.triangles[i]);
-      const bool one = r.left == r.right && r.below == r.above;
-      for (std::uint32_t row = r.below; row <= r.above; ++row)
-        for (std::uint32_t column = r.left; column <= r.right; ++column)
-          if (one || !misses(w_.triangles[i], column, row)) entries.emplace_back(row * g_.columns + column, i);
-    }
-    const auto reach = [&](std::uint32_t i) {
-      return std::max({w_.triangles[i].v[0][0], w_.triangles[i].v[1][0], w_.triangles[i].v[2][0]});
-    };
-    std::sort(entries.begin(), entries.end(), [&](const auto& a, const auto& b) {
-      if (a.first != b.first) return a.first < b.first;
-      const T p = reach(a.second), q = reach(b.second);
-      return p != q ? p > q : a.second < b.second;
-    });
-    w_.cells.assign(std::size_t(g_.columns) * g_.rows + 1, 0);
-    w_.lists.reserve(entries.size());
-    for (const auto& [cell, triangle] : entries) ++w_.cells[cell + 1], w_.lists.push_back(triangle);
-    for (std::size_t i = 1; i < w_.cells.size(); ++i) w_.cells[i] += w_.cells[i - 1];
-  }
-
-  basic_winding<T>& w_;
-  basic_winding_view<T>& g_;
-  double y_, z_;
-};
-
-}  // namespace detail
-
 /// Makes the test for points inside a mesh. The only loss is that coordinates are rounded to T. `bodies`, if given,
 /// receives the body of each of its triangles. Throws std::invalid_argument if the mesh is not closed, or as `check`.
+/// Compiled: link clearance::solid.
 template <class T = real>
-basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t>* bodies = nullptr) {
-  check(mesh);
-  if (!mesh.closed) throw std::invalid_argument("clearance: an open mesh has no inside; close it with caps");
-  basic_winding<T> w;
-  basic_winding_view<T>& g = w.grid;
-  for (int k = 0; k < 3; ++k)
-    g.low[k] = std::numeric_limits<T>::infinity(), g.high[k] = -std::numeric_limits<T>::infinity();
-  for (std::size_t i = 0; i < mesh.surface.triangles.size(); ++i) {
-    auto corners = mesh.surface.triangles[i];
-    if (!mesh.counts[i] || corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-    if (mesh.counts[i] < 0) std::swap(corners[1], corners[2]);
-    crossing_triangle<T>& t = w.triangles.emplace_back();
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) {
-        const T x = t.v[j][k] = T(mesh.surface.vertices[corners[j]][k]);
-        g.low[k] = std::min(g.low[k], x), g.high[k] = std::max(g.high[k], x);
-      }
-    if (bodies) bodies->push_back(mesh.body[i]);
-  }
-  if (!w.triangles.empty()) {
-    detail::winding_grid<T> made(w);
-  } else {
-    w.cells = {0, 0};  // never looked at, because no point is between low and high
-  }
-  w.enclosed = mesh.enclosed.packed<T>();
-  return w;
-}
-
-/// A triangle that a ray along +x meets.
-struct ray_hit {
-  double x;
-  std::int32_t sign;       ///< +1 where the ray leaves through it, -1 where it enters.
-  std::uint32_t triangle;  ///< Its number in the winding.
-};
-
-/// As many rays along each side as `wanted`, or fewer where triangles lie so many deep that they would take minutes.
-inline int affordable_rays(const basic_winding<double>& w, int wanted) {
-  const double deep = double(w.lists.size()) / double(w.cells.size());
-  return std::clamp(int(std::sqrt(3e7 / std::max(deep, 1.0))), 16, wanted);
-}
-
-/// Calls `visit(hits)` for rays along +x through the cell middles of a grid of `rays` by `rays` over (y, z), with the
-/// hits from low to high x. Returns the (y, z) area that each ray stands for, square metres.
-template <class F>
-double for_each_ray(const basic_winding<double>& w, int rays, F visit) {
-  const basic_winding_view<double> g = w.view();
-  const double y = g.high[1] - g.low[1], z = g.high[2] - g.low[2];
-  std::vector<ray_hit> hits;
-  for (int i = 0; i < rays; ++i)
-    for (int j = 0; j < rays; ++j) {
-      // Slightly off the middle, so that rays do not run in the seams of symmetric meshes.
-      const double py = g.low[1] + y * ((i + 0.4987) / rays), pz = g.low[2] + z * ((j + 0.5021) / rays);
-      const std::uint32_t cell = g.row(pz) * g.columns + g.column(py);
-      hits.clear();
-      for (std::uint32_t k = g.begin[cell]; k < g.begin[cell + 1]; ++k) {
-        const auto& v = g.triangles[g.lists[k]].v;
-        const int s = crossing::side(v[0], v[1], py, pz);
-        if (s == 0 || crossing::side(v[1], v[2], py, pz) != s || crossing::side(v[2], v[0], py, pz) != s) continue;
-        const double uy = v[1][1] - v[0][1], uz = v[1][2] - v[0][2], vy = v[2][1] - v[0][1], vz = v[2][2] - v[0][2];
-        const double det = uy * vz - uz * vy, a = ((py - v[0][1]) * vz - (pz - v[0][2]) * vy) / det,
-                     b = (uy * (pz - v[0][2]) - uz * (py - v[0][1])) / det;
-        const double x = v[0][0] + a * (v[1][0] - v[0][0]) + b * (v[2][0] - v[0][0]);
-        if (std::isfinite(x)) hits.push_back({x, s, g.lists[k]});
-      }
-      std::sort(hits.begin(), hits.end(),
-                [](const auto& p, const auto& q) { return p.x != q.x ? p.x < q.x : p.triangle < q.triangle; });
-      visit(std::span<const ray_hit>(hits));
-    }
-  return (y / rays) * (z / rays);
-}
-
-/// Rounding can swap two touching surfaces along a ray. That is no overlap, so shorter pieces are ignored. Metres.
-inline double least_piece(const basic_winding<double>& w) { return 1e-9 * (w.grid.high[0] - w.grid.low[0]); }
-
-/// What a closed surface encloses.
-struct enclosed {
-  double volume = 0;      ///< Cubic metres where the winding number is not 0.
-  bool exact = true;      ///< From the divergence theorem; otherwise from rays, to about 0.1 %.
-  bool overlaps = false;  ///< Some winding numbers are other than 0 and 1, or 0 and -1.
-};
-
-/// Rays find the winding numbers that occur. If these are only 0 and 1, or 0 and -1, the signed volume is the answer;
-/// otherwise the lengths of rays inside are summed.
-inline enclosed enclosed_volume(const basic_winding<double>& w) {
-  if (w.triangles.empty()) return {};
-  int lowest = 0, highest = 0;
-  const auto sum_of_rays = [&](int rays) {
-    double length = 0;
-    const double each = for_each_ray(w, rays, [&](std::span<const ray_hit> hits) {
-      int number = 0;
-      for (std::size_t k = 0; k + 1 < hits.size(); ++k) {
-        number -= hits[k].sign;  // +1: the ray leaves
-        const double span = hits[k + 1].x - hits[k].x;
-        if (number != 0) length += span;
-        if (span > least_piece(w)) lowest = std::min(lowest, number), highest = std::max(highest, number);
-      }
-    });
-    return length * each;
-  };
-  double signed_volume = 0;
-  for (const auto& t : w.triangles) {
-    double v[3][3];
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) v[j][k] = t.v[j][k] - w.grid.low[k];
-    signed_volume +=
-        (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) - v[0][1] * (v[1][0] * v[2][2] - v[1][2] * v[2][0]) +
-         v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
-        6;
-  }
-  sum_of_rays(affordable_rays(w, 128));
-  enclosed e;
-  e.overlaps = highest - lowest > 1;
-  e.exact = !e.overlaps;
-  e.volume = e.overlaps ? sum_of_rays(affordable_rays(w, 512)) : std::abs(signed_volume);
-  return e;
-}
+basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t>* bodies = nullptr);
+extern template basic_winding<float> make_winding(const closed_mesh&, std::vector<std::uint32_t>*);
+extern template basic_winding<double> make_winding(const closed_mesh&, std::vector<std::uint32_t>*);
 
 }  // namespace clearance

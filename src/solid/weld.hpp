@@ -2,8 +2,8 @@
 #pragma once
 // Cleans a mesh before it is closed: joins corners, finds repeated triangles, and refuses what is no mesh.
 
-#include <clearance/solid/edges.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
+#include "solid/edges.hpp"
 
 #include <Eigen/Geometry>
 

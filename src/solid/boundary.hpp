@@ -2,8 +2,8 @@
 #pragma once
 // Where a mesh has holes, and the caps that close them.
 
-#include <clearance/solid/edges.hpp>
-#include <clearance/solid/polygon.hpp>
+#include "solid/edges.hpp"
+#include "solid/polygon.hpp"
 
 #include <Eigen/Core>
 

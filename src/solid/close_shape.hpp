@@ -2,11 +2,11 @@
 #pragma once
 // Closes one shape of a part: finds its bodies, welds cracks and caps holes.
 
-#include <clearance/solid/boundary.hpp>
-#include <clearance/solid/closed_mesh.hpp>
-#include <clearance/solid/edges.hpp>
+#include <clearance/solid/close_mesh.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
-#include <clearance/solid/weld.hpp>
+#include "solid/boundary.hpp"
+#include "solid/edges.hpp"
+#include "solid/weld.hpp"
 
 #include <Eigen/Geometry>
 
