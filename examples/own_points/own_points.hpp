@@ -23,7 +23,8 @@ struct three_arrays {
   }
 
   // Enough so far. With these a device has four entries on their way while it looks at others, as of the library's
-  // sources.
+  // sources. In this list a misspelt one would be missed.
+  using can = clearance::can<clearance::sources::fetched>;
   struct alignas(16) row {
     float of[4];
   };

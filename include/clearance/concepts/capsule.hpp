@@ -16,13 +16,6 @@ struct capsule {
   CLEARANCE_HD vec3 at(real t) const { return fma(t, along, from); }
 };
 
-/// A source whose points stand for capsules.
-/// Law: `around(i, s[i].position)` starts there, and is finite.
-template <class S>
-concept capsule_source = point_source<S> && requires(const S s, std::size_t i, vec3 p) {
-  { s.around(i, p) } -> std::same_as<capsule>;
-};
-
 /// A source whose points are somewhere in their capsules: nothing is certainly anywhere.
 template <class S>
 concept vague_source = capsule_source<S> && S::vague;

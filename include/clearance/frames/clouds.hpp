@@ -97,25 +97,38 @@ bool any_vague(const Clouds& clouds) {
   return some;
 }
 
-/// `clouds_of_any_kind<T>` with reasons.
+namespace detail {
+template <template <class...> class Many, class... T>
+consteval bool explain_each(std::type_identity<Many<T...>>);
+}  // namespace detail
+
+/// `clouds_of_any_kind<T>` with reasons, and with what else its sources have.
 template <class T>
 consteval bool explain_clouds() {
-  if constexpr (!clouds_of_any_kind<T>) {
-    if constexpr (requires(const T t) { t.source, t.pose; })
-      explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
-    else if constexpr (requires(const T t) { *std::begin(t); })
-      explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();
-    else if constexpr (requires(const T t) {
-                         t.size();
-                         t[0];
-                       })
-      explain_point_source<T>();
-    else
-      static_assert(
-          clouds_of_any_kind<T>,
-          "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
-  }
+  if constexpr (point_source<T>)
+    explain_point_source<T>();
+  else if constexpr (requires(const T t) { t.source, t.pose; })
+    explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
+  else if constexpr (std::is_convertible_v<const T&, point_span>)
+    return true;
+  else if constexpr (requires(const T t) { *std::begin(t); })
+    explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();
+  else if constexpr (requires { std::tuple_size<T>::value; } || requires { std::variant_size<T>::value; })
+    detail::explain_each(std::type_identity<T>());
+  else if constexpr (requires(const T t) {
+                       t.size();
+                       t[0];
+                     })
+    explain_point_source<T>();
+  else
+    static_assert(
+        clouds_of_any_kind<T>,
+        "clouds are: a point source, a placed one, a vector of vec3; or a range, a tuple or variants of those");
   return clouds_of_any_kind<T>;
+}
+template <template <class...> class Many, class... T>
+consteval bool detail::explain_each(std::type_identity<Many<T...>>) {
+  return (explain_clouds<T>() && ...);
 }
 /// The same for everything that a call is given as clouds.
 template <class First, class... Rest>

@@ -13,6 +13,9 @@ namespace clearance {
 /// hundred points, so it is as fast as the source. Of an uncertain source, `uncertain<any_points, ...>` is one, too.
 class any_points {
  public:
+  using can = clearance::can<sources::read, sources::surveyed, sources::unfiltered, sources::ranged, sources::seen,
+                             sources::rounded, sources::slicing>;
+
   template <point_source S>
     requires(!std::same_as<S, any_points>)
   any_points(const S& source) : of_(&functions_of<S>), size_(source.size()) {

@@ -61,6 +61,8 @@ template <class Pixel>
 struct depth_image {
   static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
                 "depth pixels are 16-bit integers or floats");
+  using can = clearance::can<sources::image, sources::seeing, sources::ranged, sources::fetched, sources::surveyed,
+                             sources::copied, sources::checked, sources::rounded>;
 
   const Pixel* pixels = nullptr;
   std::uint32_t width = 0, height = 0;

@@ -7,14 +7,6 @@
 
 namespace clearance {
 
-/// An image whose pixels can be asked for more than a point.
-/// Law: pixel i looks along `way(i)`, whose z is 1. `depth(i)` is what it holds in metres, even if that is no depth.
-template <class S>
-concept seeing_image = point_source<S> && requires(const S s, std::size_t i) {
-  { s.way(i) } -> std::same_as<vec3>;
-  { s.depth(i) } -> std::same_as<real>;
-};
-
 /// Which room behind its pixels an image hides, in metres of z.
 struct hiding {
   real nearest = 0.1f;            ///< From here on a pixel without a return hides everything,
@@ -28,6 +20,10 @@ struct hiding {
 template <seeing_image Image>
 struct hidden {
   static constexpr bool sight = true;
+  static constexpr bool surveys =
+      surveyed_source<Image> && requires(const Image i) { i.deproject(0, 0u, 0u); };  ///< See `surveyed_capsules`.
+  using can = can_all<clearance::can<sources::capsules, sources::ranged, sources::rounded>,
+                      can_if<surveys, sources::surveyed_around>, can_as<Image, sources::copied>>;
 
   Image image;
   hiding room;
@@ -54,7 +50,7 @@ struct hidden {
   /// See `surveyed_capsules`: if every pixel hides something, and no depth is strange.
   bool survey_capsules(std::size_t begin, extent& starts, extent& ends, real& widest,
                        std::uint32_t (&)[drop_reasons]) const
-    requires(surveyed_source<Image> && requires(const Image i) { i.deproject(0, 0u, 0u); })
+    requires surveys
   {
     std::uint32_t dropped[drop_reasons] = {}, silent = 0;
     if (own || labels != nullptr) return false;
@@ -82,8 +78,14 @@ struct hidden {
     return {own.absolute, own.relative + double(half_pixel) + 0x1p-19};
   }
 
-  std::span<const std::byte> bytes() const { return image.bytes(); }
-  hidden at(const std::byte* copy) const {
+  std::span<const std::byte> bytes() const
+    requires copied_source<Image>
+  {
+    return image.bytes();
+  }
+  hidden at(const std::byte* copy) const
+    requires copied_source<Image>
+  {
     hidden moved = *this;
     moved.image = image.at(copy);
     return moved;

@@ -2,8 +2,8 @@
 #pragma once
 // A mask that hides points, such as the robot's own.
 
-#include <clearance/concepts.hpp>
 #include <clearance/ground/read_only.hpp>
+#include <clearance/points/passes_on.hpp>
 
 namespace clearance {
 
@@ -15,61 +15,58 @@ enum class point_label : std::uint8_t {
   no_point,   ///< There was no valid point.
 };
 
-namespace detail {
-template <class S>
-struct masked_types {};
-template <fetched_source S>
-struct masked_types<S> {
-  struct cursor {
-    typename S::cursor source;
-    const std::uint32_t* labels;
-  };
-  struct four {
-    typename S::four source;
-    std::uint32_t labels;
-  };
-};
-}  // namespace detail
-
 /// A source without the points labelled `own`, as fast as the source itself. They are dropped as `masked`, and the
 /// others keep their numbers. `labels`, one per point, lie where the query's backend can read them; the source may be
 /// anywhere.
 template <point_source S>
-struct masked : detail::masked_types<S> {
+struct masked : passes_on<masked<S>, S, sources::copied, sources::copied_in_pieces> {
   static_assert(points_alone<S>());
+  using can = can_all<typename masked::passed, clearance::can<sources::checked>,
+                      can_as<S, sources::fetched, sources::surveyed>>;
 
   S source;
   const point_label* labels;
+  static constexpr auto viewed = &masked::source;
 
   CLEARANCE_HD masked(const S& source, const point_label* labels) : source(source), labels(labels) {}
 
-  CLEARANCE_HD std::size_t size() const { return source.size(); }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (s.valid() && labels[i] == point_label::own) s.dropped = drop_reason::masked;
     return s;
   }
 
+  struct cursor {
+    typename detail::fetched_types<S>::cursor source;
+    const std::uint32_t* labels;
+  };
+  struct four {
+    typename detail::fetched_types<S>::four source;
+    std::uint32_t labels;
+  };
   CLEARANCE_HD bool fetches() const
     requires fetched_source<S>
   {
     return source.fetches() && reinterpret_cast<std::uintptr_t>(labels) % 4 == 0;
   }
-  CLEARANCE_HD auto seek(std::size_t i) const
+  CLEARANCE_HD cursor seek(std::size_t i) const
     requires fetched_source<S>
   {
-    return typename masked::cursor{source.seek(i), reinterpret_cast<const std::uint32_t*>(labels) + i / 4};
+    return {source.seek(i), reinterpret_cast<const std::uint32_t*>(labels) + i / 4};
   }
-  template <class Cursor>
-  CLEARANCE_HD Cursor skip(const Cursor& c, std::size_t n) const {
+  CLEARANCE_HD cursor skip(const cursor& c, std::size_t n) const
+    requires fetched_source<S>
+  {
     return {source.skip(c.source, n), c.labels + n / 4};
   }
-  template <class Cursor>
-  CLEARANCE_HD auto fetch(const Cursor& c) const {
-    return typename masked::four{source.fetch(c.source), read_only(c.labels)};
+  CLEARANCE_HD four fetch(const cursor& c) const
+    requires fetched_source<S>
+  {
+    return {source.fetch(c.source), read_only(c.labels)};
   }
-  template <class Four>
-  CLEARANCE_HD unsigned look(const Four& f, std::size_t i, vec3 (&at)[4]) const {
+  CLEARANCE_HD unsigned look(const four& f, std::size_t i, vec3 (&at)[4]) const
+    requires fetched_source<S>
+  {
     unsigned reasons = source.look(f.source, i, at);
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j)
@@ -88,26 +85,8 @@ struct masked : detail::masked_types<S> {
   }
   /// See `rounding_of`.
   void check() const {
-    if (labels == nullptr && size() != 0)
-      detail::refuse_source("a mask for " + std::to_string(size()) + " points has no labels: they are null");
-  }
-  position_error rounding() const { return rounding_of(source); }
-
-  std::span<const std::byte> bytes() const
-    requires requires(const S s) { s.bytes(); }
-  {
-    return source.bytes();
-  }
-  masked at(const std::byte* copy) const
-    requires requires(const S s, const std::byte* b) { s.at(b); }
-  {
-    return masked(source.at(copy), labels);
-  }
-  template <class F>
-  masked with_pieces(const F& f) const
-    requires requires(const S s, const F f) { s.with_pieces(f); }
-  {
-    return masked(source.with_pieces(f), labels);
+    if (labels == nullptr && source.size() != 0)
+      detail::refuse_source("a mask for " + std::to_string(source.size()) + " points has no labels: they are null");
   }
 };
 

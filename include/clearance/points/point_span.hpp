@@ -79,6 +79,9 @@ namespace clearance {
 
 /// `count` points, each three floats x y z, one after another (12 bytes per point). Metres.
 struct point_span {
+  using can = clearance::can<sources::fetched, sources::surveyed, sources::unfiltered, sources::filtered,
+                             sources::slicing, sources::copied, sources::checked, sources::rounded>;
+
   const vec3* points = nullptr;
   std::size_t count = 0;
   point_filter filter = {};

@@ -21,6 +21,8 @@ template <class Pixel>
 struct ray_image {
   static_assert(std::is_same_v<Pixel, std::uint16_t> || std::is_same_v<Pixel, float>,
                 "depth pixels are 16-bit integers or floats");
+  using can = clearance::can<sources::image, sources::seeing, sources::ranged, sources::fetched, sources::copied,
+                             sources::checked, sources::rounded>;
 
   const Pixel* pixels = nullptr;
   const ray* rays = nullptr;

@@ -19,6 +19,9 @@ class sharded {
   static_assert(points_or_balls<S>());
 
  public:
+  using can = can_all<
+      clearance::can<sources::rounded, sources::ranged, sources::seen, sources::in_pieces, sources::copied_in_pieces>,
+      can_if<ball_source<S>, sources::capsules>, can_as<S, sources::shared>>;
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
   static constexpr bool vague = ball_source<S>, balls = vague;
 
@@ -36,17 +39,17 @@ class sharded {
     const std::size_t k = piece_with(i);
     return piece_[k].around(i - first_[k], p);
   }
-  CLEARANCE_HD auto shares(std::size_t i, vec3 p) const
-    requires requires(const S s) { s.shares(i, p); }
+  CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const
+    requires shared_source<S>
   {
     const std::size_t k = piece_with(i);
     return piece_[k].shares(i - first_[k], p);
   }
-  /// See `beyond_range`.
   CLEARANCE_HD real beyond(std::size_t i, vec3 p) const {
     const std::size_t k = piece_with(i);
     return beyond_range(piece_[k], i - first_[k], p);
   }
+  CLEARANCE_HD vec3 sensor() const { return sensor_of(piece_[0]); }
   /// The largest errors of all pieces.
   position_error rounding() const {
     position_error worst;
@@ -93,27 +96,6 @@ class sharded {
   std::size_t pieces_;
   std::size_t first_[most + 1] = {};
 };
-
-/// A cloud that is made of pieces.
-template <class S>
-concept sharded_source = point_source<S> && requires(const S s, std::size_t k) {
-  s.pieces();
-  s.first(k);
-  s.piece(k);
-};
-
-namespace detail {
-struct same_piece {
-  template <class S>
-  const S& operator()(const S& piece) const {
-    return piece;
-  }
-};
-}  // namespace detail
-
-/// A cloud whose points lie in several pieces of memory.
-template <class S>
-concept source_in_pieces = requires(const S s) { s.with_pieces(detail::same_piece{}); };
 
 /// The number of the first point of piece `k`, if a cloud is split into `n`: sharded clouds into their own pieces,
 /// others into about equal slices. For k = n, the number of points.

@@ -2,33 +2,27 @@
 #pragma once
 // A piece of a cloud, as a cloud.
 
-#include <clearance/concepts.hpp>
+#include <clearance/points/passes_on.hpp>
 
 #include <algorithm>
 
 namespace clearance {
 
-namespace detail {
-template <class S>
-struct fetched_types {};
-template <fetched_source S>
-struct fetched_types<S> {
-  using cursor = typename S::cursor;
-  using four = typename S::four;
-};
-}  // namespace detail
-
 /// Points `begin` to `begin + count - 1` of any source, as fast as the source itself if `begin` is a multiple of four.
 template <point_source S>
-struct sliced : detail::fetched_types<S> {
+struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, sources::surveyed> {
   static_assert(points_alone<S>());
+  using can = can_all<typename sliced::passed, can_as<S, sources::copied>>;
+
   S whole;
   std::size_t begin, count;
+  static constexpr auto viewed = &sliced::whole;
 
   CLEARANCE_HD sliced(const S& whole, std::size_t begin, std::size_t count)
       : whole(whole), begin(begin), count(count) {}
 
   CLEARANCE_HD std::size_t size() const { return count; }
+  CLEARANCE_HD std::size_t number_in_viewed(std::size_t i) const { return begin + i; }
   CLEARANCE_HD sample operator[](std::size_t i) const { return whole[begin + i]; }
 
   CLEARANCE_HD bool fetches() const
@@ -36,40 +30,10 @@ struct sliced : detail::fetched_types<S> {
   {
     return begin % 4 == 0 && whole.fetches();
   }
-  CLEARANCE_HD auto seek(std::size_t i) const
-    requires fetched_source<S>
-  {
-    return whole.seek(begin + i);
-  }
-  template <class Cursor>
-  CLEARANCE_HD auto skip(const Cursor& c, std::size_t n) const {
-    return whole.skip(c, n);
-  }
-  template <class Cursor>
-  CLEARANCE_HD auto fetch(const Cursor& c) const {
-    return whole.fetch(c);
-  }
-  template <class Four>
-  CLEARANCE_HD unsigned look(const Four& f, std::size_t i, vec3 (&at)[4]) const {
-    return whole.look(f, begin + i, at);
-  }
-
-  CLEARANCE_HD bool unfiltered() const
-    requires unfiltered_source<S>
-  {
-    return whole.unfiltered();
-  }
-  bool survey(std::size_t i, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
-    requires surveyed_source<S>
-  {
-    return whole.survey(begin + i, box, dropped);
-  }
-  position_error rounding() const { return rounding_of(whole); }
-
   /// The source's memory. If the source has `bytes(begin, end)`, only what these points need, from a multiple of 256
   /// bytes on, because copies are aligned so.
   std::span<const std::byte> bytes() const
-    requires requires(const S s) { s.bytes(); }
+    requires copied_source<S>
   {
     const std::span<const std::byte> all = whole.bytes();
     if constexpr (requires { whole.bytes(begin, begin); }) {
@@ -81,7 +45,7 @@ struct sliced : detail::fetched_types<S> {
     return all;
   }
   sliced at(const std::byte* copy) const
-    requires requires(const S s, const std::byte* b) { s.at(b); }
+    requires copied_source<S>
   {
     if (count == 0) return *this;
     const auto before =
@@ -95,9 +59,7 @@ struct sliced : detail::fetched_types<S> {
 CLEARANCE_CALLS_ANYTHING
 template <point_source S>
 CLEARANCE_HD auto slice(const S& source, std::size_t begin, std::size_t end) {
-  if constexpr (requires {
-                  { source.slice(begin, end) } -> point_source;
-                })
+  if constexpr (slicing_source<S>)
     return source.slice(begin, end);
   else
     return sliced<S>(source, begin, end - begin);

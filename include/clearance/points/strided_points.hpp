@@ -15,6 +15,8 @@ template <class Scalar = float>
 struct strided_points {
   static_assert(std::is_same_v<Scalar, float> || std::is_same_v<Scalar, double>,
                 "PointCloud2 coordinates are FLOAT32 or FLOAT64");
+  using can = clearance::can<sources::fetched, sources::unfiltered, sources::filtered, sources::copied,
+                             sources::checked, sources::rounded>;
 
   const std::byte* data = nullptr;
   std::size_t count = 0;

@@ -15,13 +15,12 @@ struct point_tile {
   void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
 
-  /// Reads `count` points: begin, begin + stride, ...; counts dropped ones, by reason. A source may do this itself:
-  /// `void read(std::size_t begin, std::size_t count, std::size_t stride, point_tile&, std::uint32_t
-  /// (&dropped)[drop_reasons]) const`.
+  /// Reads `count` points: begin, begin + stride, ...; counts dropped ones, by reason. A `read_source` does this
+  /// itself.
   template <point_source S>
   void read(const S& source, std::size_t begin, std::size_t count, std::size_t stride,
             std::uint32_t (&dropped)[drop_reasons]) {
-    if constexpr (requires { source.read(begin, count, stride, *this, dropped); })
+    if constexpr (read_source<S>)
       source.read(begin, count, stride, *this, dropped);
     else
       take_apart(source, begin, count, stride, dropped);

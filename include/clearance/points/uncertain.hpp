@@ -15,13 +15,6 @@ struct cloud_uncertainty {
   double age = 0;              ///< So old is the cloud, in seconds.
 };
 
-/// What of a point's radius comes from where. Metres.
-struct radius_shares {
-  real noise = 0, calibration = 0, time = 0;
-
-  CLEARANCE_HD real sum() const { return noise + calibration + time; }
-};
-
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
 /// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
 /// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then. A point that
@@ -29,13 +22,18 @@ struct radius_shares {
 ///
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
-struct uncertain {
+struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copied_in_pieces, sources::in_pieces> {
   static constexpr bool vague = true, balls = !capsule_source<S>;
+  static constexpr bool surveys =
+      surveyed_source<S> && balls && requires(const N n, extent e) { n.most(0, e); };  ///< See `surveyed_capsules`.
+  using can = can_all<typename uncertain::passed, clearance::can<sources::checked, sources::capsules, sources::shared>,
+                      can_if<balls, sources::slicing>, can_if<surveys, sources::surveyed_around>>;
 
   S source;
   N noise;
   real shift, turn, drift;  ///< Metres, radians, metres.
   real spread;              ///< More than what arithmetic and the source's rounding lose in a radius.
+  static constexpr auto viewed = &uncertain::source;
 
   /// Throws std::invalid_argument for options that are negative or not finite.
   explicit uncertain(const S& source, const N& noise = {}, const cloud_uncertainty& of = {})
@@ -64,7 +62,6 @@ struct uncertain {
     if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
   }
 
-  CLEARANCE_HD std::size_t size() const { return source.size(); }
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
     if (s.dropped == drop_reason::out_of_range && may_be_in_range(i, s.position)) s.dropped = drop_reason::none;
@@ -99,7 +96,7 @@ struct uncertain {
   /// See `surveyed_capsules`; false also where some radius is unbounded.
   bool survey_capsules(std::size_t begin, extent& box, extent& ends, real& widest,
                        std::uint32_t (&dropped)[drop_reasons]) const
-    requires surveyed_source<S> && (!capsule_source<S>) && requires(const N n, extent e) { n.most(begin, e); }
+    requires surveys
   {
     std::uint32_t its[drop_reasons] = {};
     if (!source.survey(begin, box, its)) return false;
@@ -125,52 +122,20 @@ struct uncertain {
   }
   /// Points `begin` to `end - 1`, each with its own radius.
   auto slice(std::size_t begin, std::size_t end) const
-    requires(!capsule_source<S>)
+    requires balls
   {
     return around_same(clearance::slice(source, begin, end), clearance::slice(noise, begin, end));
   }
-  /// The pieces of a `sharded` source, as that says them.
-  std::size_t pieces() const
-    requires sharded_source<S>
-  {
-    return source.pieces();
-  }
+  /// Of a `sharded` source.
   auto piece(std::size_t k) const
     requires sharded_source<S>
   {
-    return around_same(source.piece(k), clearance::slice(noise, first(k), first(k + 1)));
+    return around_same(source.piece(k), clearance::slice(noise, source.first(k), source.first(k + 1)));
   }
-  std::size_t first(std::size_t k) const
-    requires sharded_source<S>
-  {
-    return source.first(k);
-  }
-  template <class F>
-  uncertain with_pieces(const F& f) const
-    requires source_in_pieces<S>
-  {
-    uncertain same = *this;
-    same.source = source.with_pieces(f);
-    return same;
-  }
-
   position_error rounding() const {
     position_error own = rounding_of(source);
     if constexpr (capsule_source<S>) own.relative += double(turn);
     return own;
-  }
-
-  std::span<const std::byte> bytes() const
-    requires requires(const S s) { s.bytes(); }
-  {
-    return source.bytes();
-  }
-  uncertain at(const std::byte* copy) const
-    requires requires(const S s, const std::byte* b) { s.at(b); }
-  {
-    uncertain moved = *this;
-    moved.source = source.at(copy);
-    return moved;
   }
 
  private:
@@ -204,7 +169,7 @@ struct as_measured {
 /// What a source says about the radius of its point i at p.
 template <point_source S>
 CLEARANCE_HD radius_shares shares_of(const S& s, std::size_t i, vec3 p) {
-  if constexpr (requires { s.shares(i, p); })
+  if constexpr (shared_source<S>)
     return s.shares(i, p);
   else
     return {};

@@ -9,6 +9,7 @@
 #include <clearance/ground/vectors.hpp>
 #include <clearance/pairwise/nearest_bins.hpp>
 #include <clearance/pairwise/pairs_on.hpp>
+#include <clearance/points/passes_on.hpp>
 #include <clearance/questions/within.hpp>
 #include <clearance/result.hpp>
 #include <clearance/robot/model.hpp>
@@ -27,22 +28,19 @@ namespace clearance {
 /// Every `stride`-th point of any source, from its first one on. The others are there, but do not count: so a device
 /// spreads the sample over as many blocks as it does the whole.
 template <point_source S>
-struct thinned {
+struct thinned : passes_on<thinned<S>, S, sources::capsules> {
   static constexpr bool vague = vague_source<S>, balls = ball_source<S>;
+  using can = typename thinned::passed;
 
   S whole;
   std::uint32_t stride;
+  static constexpr auto viewed = &thinned::whole;
 
-  CLEARANCE_HD std::size_t size() const { return whole.size(); }
+  CLEARANCE_HD thinned(const S& whole, std::uint32_t stride) : whole(whole), stride(stride) {}
+
   CLEARANCE_HD sample operator[](std::size_t i) const {
     return std::uint32_t(i) % stride == 0 ? whole[i] : sample{{0, 0, 0}, drop_reason::masked};
   }
-  CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
-    requires capsule_source<S>
-  {
-    return whole.around(i, p);
-  }
-  position_error rounding() const { return rounding_of(whole); }
 };
 
 }  // namespace clearance

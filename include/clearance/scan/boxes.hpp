@@ -2,6 +2,7 @@
 #pragma once
 // Where neighbouring points of a cloud are, kept from the first scan, so that later scans need not read them.
 
+#include <clearance/points/passes_on.hpp>
 #include <clearance/scan/tile_scan.hpp>
 
 #include <algorithm>
@@ -55,15 +56,17 @@ inline double away(const ball& around, const boxed_piece& piece, vec3 origin) {
 /// A source that records what a host's scan sees of it. `pieces`: one per `piece_points`, which one thread scans; or
 /// null. An incomplete last tile is not surveyed: call `add_rest` for it.
 template <point_source S>
-struct boxing {
+struct boxing : passes_on<boxing<S>, S> {
   static_assert(points_alone<S>());
+  using can = can_all<typename boxing::passed, clearance::can<sources::unfiltered, sources::surveyed>>;
 
   S source;
   boxed_piece* pieces;
+  static constexpr auto viewed = &boxing::source;
 
-  CLEARANCE_HD std::size_t size() const { return source.size(); }
+  boxing(const S& source, boxed_piece* pieces) : source(source), pieces(pieces) {}
+
   CLEARANCE_HD sample operator[](std::size_t i) const { return source[i]; }
-  position_error rounding() const { return rounding_of(source); }
   bool unfiltered() const {
     if constexpr (unfiltered_source<S>) return source.unfiltered();
     return false;
@@ -83,7 +86,7 @@ struct boxing {
     return true;
   }
   void add_rest() const {
-    for (std::size_t i = size() / tile_points * tile_points; pieces != nullptr && i < size(); ++i)
+    for (std::size_t i = source.size() / tile_points * tile_points; pieces != nullptr && i < source.size(); ++i)
       pieces[i / piece_points].add(source, i);
   }
 };
@@ -98,41 +101,25 @@ void box_points(const S& source, boxed_piece* pieces) {
 /// Some pieces of a source as one source: its piece k is piece `numbers[k]` of the whole. The whole's last piece, which
 /// may be shorter, may only come last.
 template <point_source S>
-struct listed_pieces {
+struct listed_pieces : passes_on<listed_pieces<S>, S, sources::capsules, sources::unfiltered, sources::surveyed,
+                                 sources::surveyed_around> {
   static_assert(points_or_balls<S>());
+  using can = typename listed_pieces::passed;
   static constexpr bool vague = ball_source<S>, balls = vague;
 
   S whole;
   const std::uint32_t* numbers;
   std::size_t count;  ///< Number of points.
+  static constexpr auto viewed = &listed_pieces::whole;
+
+  CLEARANCE_HD listed_pieces(const S& whole, const std::uint32_t* numbers, std::size_t count)
+      : whole(whole), numbers(numbers), count(count) {}
 
   CLEARANCE_HD std::size_t size() const { return count; }
-  CLEARANCE_HD std::size_t at(std::size_t i) const {
+  CLEARANCE_HD std::size_t number_in_viewed(std::size_t i) const {
     return numbers[i / piece_points] * piece_points + i % piece_points;
   }
-  CLEARANCE_HD sample operator[](std::size_t i) const { return whole[at(i)]; }
-  CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
-    requires ball_source<S>
-  {
-    return whole.around(at(i), p);
-  }
-  position_error rounding() const { return rounding_of(whole); }
-  bool unfiltered() const
-    requires unfiltered_source<S>
-  {
-    return whole.unfiltered();
-  }
-  bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
-    requires surveyed_source<S>
-  {
-    return whole.survey(at(begin), box, dropped);
-  }
-  bool survey_capsules(std::size_t begin, extent& box, extent& ends, real& widest,
-                       std::uint32_t (&dropped)[drop_reasons]) const
-    requires surveyed_capsules<S>
-  {
-    return whole.survey_capsules(at(begin), box, ends, widest, dropped);
-  }
+  CLEARANCE_HD sample operator[](std::size_t i) const { return whole[number_in_viewed(i)]; }
 };
 
 }  // namespace clearance::scan

@@ -96,14 +96,6 @@ struct capsule_hull {
   }
 };
 
-/// A source that says where the capsules of 128 neighbours are, without taking them apart; see `surveyed_source`.
-/// Law: if it is true, starts and ends are in those boxes, and no radius is above `widest`.
-template <class S>
-concept surveyed_capsules = capsule_source<S> && requires(const S s, std::size_t begin, extent& box, real& widest,
-                                                          std::uint32_t (&dropped)[drop_reasons]) {
-  { s.survey_capsules(begin, box, box, widest, dropped) } -> std::same_as<bool>;
-};
-
 /// The capsules of a tile, less the search's origin. That of an invalid point is NaN and fails every comparison.
 class capsule_tile {
  public:
