@@ -17,14 +17,6 @@ namespace clearance::pairwise {
 
 // Labels of all points, as the blocks of a device write and count them.
 
-/// An answer that also meets every point: it has labels, one byte each, and counts those that are `own` and
-/// `uncertain`.
-template <class A>
-concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
-  *a.label_of(n, n) = a.whose_alone(true);
-  a.is_late(pair), a.counts->own, a.counts->uncertain;
-};
-
 /// A block's counts of its labels.
 struct alignas(8) label_counts {
   std::uint32_t own, uncertain;
