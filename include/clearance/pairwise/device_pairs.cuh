@@ -209,10 +209,9 @@ struct pairs_of {
     take_all(s, count, [](const pair_distance&) { return true; });
   }
 
-  static __device__ void meet(const block& s, unsigned reasons, std::uint32_t first)
-    requires labels
-  {
-    labels_of<pairs_of>::meet(s, reasons, first);
+  static __device__ void meet([[maybe_unused]] const block& s, [[maybe_unused]] unsigned reasons,
+                              [[maybe_unused]] std::uint32_t first) {
+    if constexpr (labels) labels_of<pairs_of>::meet(s, reasons, first);
   }
 
   struct news {
