@@ -17,6 +17,7 @@ namespace own_question {
 // [question]
 struct nearness {
   std::array<double, 3> limits = {0.05, 0.1, 0.2};  ///< Metres, ascending. What is asked.
+  using can = clearance::can<clearance::merging, clearance::partial>;
 
   struct result {                          ///< What the user gets.
     std::vector<unsigned long long> near;  ///< Three per part.

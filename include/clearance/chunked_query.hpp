@@ -14,8 +14,8 @@ namespace clearance {
 
 namespace detail {
 
-/// Asks about each chunk, while the next one is loaded. A question with `reach(part, parts, facts, error)` and
-/// `set_counts` needs only the chunks within reach, once the host has read the whole cloud.
+/// Asks about each chunk, while the next one is loaded. A `skipping_question` needs only the chunks within reach, once
+/// the host has read the whole cloud.
 template <class Q, class On, class PartView>
 class chunk_engine {
  public:
@@ -28,11 +28,7 @@ class chunk_engine {
     // A device's clouds in place, and radii that it reads, may not be read here.
     constexpr bool on_host =
         std::is_same_v<On, host> || (!requires { requires C::in_place; } && !capsule_source<loaded_source<C>>);
-    constexpr bool skips = on_host && requires(typename Q::result& r, const point_counts& counts,
-                                               const part_facts& facts, const frames::float_error& error) {
-      Q::set_counts(r, counts);
-      { q.reach(std::size_t(0), std::size_t(0), facts, error) } -> std::same_as<real>;
-    };
+    constexpr bool skips = on_host && skipping_question<Q>;
     const bool first = cloud.pieces().empty();
     std::vector<point_range> ranges = cloud.all();
     if constexpr (skips)
@@ -99,7 +95,7 @@ struct chunk_engine_of {
   using type = chunk_engine<Q, On, PartView>;
 };
 template <class Q, class On, class PartView>
-  requires requires { typename Q::template chunks<On, PartView>; }
+  requires chunking_question<Q>
 struct chunk_engine_of<Q, On, PartView> {
   /// With the robot where it is asked.
   struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {

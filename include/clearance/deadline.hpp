@@ -72,13 +72,10 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
   detail::joined_of<Q, PartView> all(q, ask.facts());
   std::uint64_t seen = 0;
   const auto ask_slices = [&](const detail::some_slices& slices) {  // of every cloud, so that errors are those of all
-    if constexpr (requires { ask.bound_by(all.reach()); }) ask.bound_by(all.reach());
+    if constexpr (bounded_engine<query<Q, On, PartView>>) ask.bound_by(all.reach());
     const auto place = numbers.place(clouds, slices);
     all.add(ask(poses, mapped_clouds(clouds, slices), q), place);
     for (const std::uint32_t count : place.count) seen += count;
-  };
-  const auto forget = [&] {
-    if constexpr (requires { ask.forget(); }) ask.forget();
   };
   try {
     std::size_t i = 0;
@@ -88,10 +85,10 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
     }
     if (i == 0) ask_slices({0, 0, n});  // at no points; what cannot be asked is refused all the same
   } catch (...) {
-    forget();  // also a bound that no frame has used
+    ask.forget();  // also a bound that no frame has used
     throw;
   }
-  forget();
+  ask.forget();
   so_far<typename Q::result> known{all.result(), numbers.total() - seen};
   Q::so_far(known.result, known.unseen);
   return known;

@@ -41,25 +41,21 @@ class seen_and_unseen::engine {
     memory_.begin();
     return run_both(poses, here, masked_clouds(here, std::get<0>(memory_.put(q.labels))), q);
   }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() { seen_.forget(), unseen_.forget(); }
 
  private:
   template <class Clouds, class Shown>
   const result& run_both(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Shown& shown,
                          const unseen& q) {
-    constexpr bool enqueues = requires { seen_.begin(poses, shown, min_distance{}); };
     beside_.follow();
-    if constexpr (enqueues) {
-      try {
-        seen_.begin(poses, shown, min_distance{});
-        static_cast<unseen_result&>(result_) = unseen_.run(poses, clouds, q);
-        result_.seen = seen_.finish();
-      } catch (...) {
-        beside_.wait();  // it may still read the clouds
-        throw;
-      }
-    } else {
-      result_.seen = seen_.run(poses, shown, min_distance{});
+    try {
+      seen_.begin(poses, shown, min_distance{});
       static_cast<unseen_result&>(result_) = unseen_.run(poses, clouds, q);
+      result_.seen = seen_.finish();
+    } catch (...) {
+      beside_.wait();  // it may still read the clouds
+      throw;
     }
     return result_;
   }

@@ -35,6 +35,11 @@ struct least_tally {
   CLEARANCE_HD clearance::real reach(std::uint32_t) const { return 2; }
   CLEARANCE_HD clearance::real reach_of_pair(std::uint32_t, std::uint32_t) const { return 2; }
   CLEARANCE_HD bool settled(std::uint32_t, std::uint32_t) const { return false; }
+  CLEARANCE_HD bool touched(std::uint32_t, std::uint32_t) const { return false; }
+  CLEARANCE_HD bool ended(std::uint32_t) const { return false; }
+  CLEARANCE_HD bool foresees(std::uint32_t, std::uint32_t, clearance::vec3, bool, const clearance::nearest&) const {
+    return false;
+  }
   CLEARANCE_HD bool take_inside(std::uint32_t, std::uint32_t) const { return false; }
   CLEARANCE_HD void take_certain() const {}
   CLEARANCE_HD clearance::nearest visitor(std::uint32_t, std::uint32_t) const { return {2}; }

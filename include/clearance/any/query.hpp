@@ -110,21 +110,18 @@ class prepared : public Interface {
 
   typename question_type::result operator()(std::span<const Eigen::Isometry3d> poses,
                                             const std::vector<cloud_type>& clouds, const question_type& q) override {
-    if constexpr (can_place) {
+    if constexpr (placing_engine<query_type>) {
       place(poses);
       return query_(clouds, q);
     } else {
       return query_(poses, read(clouds), q);
     }
   }
-  void forget() override {
-    if constexpr (requires { query_.forget(); }) query_.forget();
-  }
+  void forget() override { query_.forget(); }
 
  protected:
   using query_type = decltype(clearance::query(std::declval<const On&>(), std::declval<const Robot&>(),
                                                std::declval<const question_type&>()));
-  static constexpr bool can_place = requires(query_type& its, std::span<const Eigen::Isometry3d> p) { its.place(p); };
 
   /// Takes the poses of many configurations to the device.
   void place(std::span<const Eigen::Isometry3d> poses) {
@@ -135,7 +132,7 @@ class prepared : public Interface {
     placed_.assign(poses.begin(), poses.end());
   }
   static decltype(auto) read(const std::vector<cloud_type>& clouds) {
-    if constexpr (std::is_same_v<On, host> && !requires { requires question_type::of_images; })
+    if constexpr (std::is_same_v<On, host> && !lists<question_type, of_images>)
       return detail::read_as_one(clouds);
     else
       return (clouds);
@@ -162,11 +159,11 @@ class timed : public prepared<Interface, On, Robot> {
   }
 };
 
-/// Can Q be asked about robots of these parts? A question may say so by `about<PartView>`.
+/// Can Q be asked about robots of these parts?
 template <class Q, class Robot>
 consteval bool is_about() {
   using part_view = typename decltype(std::declval<const Robot&>().view())::part_type;
-  if constexpr (requires { Q::template about<part_view>; })
+  if constexpr (choosing::is_there<Q>())
     return Q::template about<part_view>;
   else
     return true;

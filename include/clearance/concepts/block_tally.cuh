@@ -14,7 +14,7 @@ struct scan_arguments;
 
 /// What every kernel of a scan asks. `arguments` come with the launch, `memory` lies in shared memory and is cleared by
 /// `clear(thread)`; `scan_type` is the scan that launches it; `top_bytes` of shared memory hold the first nodes of
-/// trees.
+/// trees. An `element` is what it makes of a point: its position, or a capsule.
 ///
 /// Law: `reach_of_part(block, part, bound)` never grows while the kernel runs; an old value only costs time.
 /// Law: all blocks call `hand_in`; then the last one calls `conclude` with all its threads, and `reset` with one, which
@@ -22,6 +22,7 @@ struct scan_arguments;
 template <class T>
 concept block_tally = requires(const typename T::block& s, const scan::scan_arguments<T>& a, std::uint32_t n) {
   typename T::part_type;
+  typename T::element;
   typename T::arguments;
   typename T::memory;
   typename T::scan_type;
@@ -36,8 +37,9 @@ concept block_tally = requires(const typename T::block& s, const scan::scan_argu
 ///
 /// Law: `take(block, record, primitive, pair)` is called by all lanes of a warp, each with a record or none;
 /// `take_inside` instead of a walk, if a point is inside a part's solid; `drained(block, count)` by all threads, when
-/// the block has walked all its pairs. Law: what `skips` and `settled` say of a pair stays true. `news` brings the
-/// bounds of other blocks, `seeds` first bounds.
+/// the block has walked all its pairs; `meet(block, reasons, index)` by each thread for its next four points, before
+/// their pairs come: why they do not count, and the first one's number. Law: what `skips` and `settled` say of a pair
+/// stays true. `news` brings the bounds of other blocks, `seeds` first bounds.
 template <class T>
 concept pair_tally =
     block_tally<T> && requires(typename T::block& s, const typename T::block& c, std::uint32_t n, vec3 x,
@@ -47,8 +49,10 @@ concept pair_tally =
       { T::reach_of_pair(c, n, n) } -> std::same_as<real>;
       { T::common_bound(c) } -> std::same_as<std::uint32_t>;
       { T::settled(c, n, n) } -> std::same_as<bool>;
+      { T::touched(c, n, n) } -> std::same_as<bool>;
       { T::skips(c, n, n, n, x) } -> std::same_as<bool>;
       { T::wants_certain(c) } -> std::same_as<bool>;
+      T::meet(c, n, n);
       T::take_inside(s, n, n, n);
       T::take_certain(s);
       T::take(s, found, primitive, n);

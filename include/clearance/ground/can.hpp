@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// What a model can beyond what its concept demands, as a list of names. C++20 cannot list a type's members, so that a
-// misspelt optional member would be silently absent; in the list its ability is missed.
+// What a model can beyond what its concept demands, as a list of names. C++20 cannot list a type's members, so a
+// misspelt optional member would be silently absent; with the list it is missed.
 
 #include <type_traits>
 
@@ -26,7 +26,7 @@ template <class M, class Ability>
   requires has_list<M>
 inline constexpr bool lists<M, Ability> = M::can::template has<Ability>;
 
-/// Refuses abilities that are none of `Known`, and explains each of these.
+/// Explains each ability that models of a kind may have. Another one in the list is refused.
 template <class M, class... Known>
 consteval bool explain_abilities() {
   if constexpr (has_list<M>)
@@ -35,29 +35,39 @@ consteval bool explain_abilities() {
   return (Known::template explain<M>() && ...);
 }
 
-/// Declares an ability: a model that has a member of this name, of whatever kind, must fit CONCEPT, and so must one
-/// that lists the ability. SENTENCE says what the member is. (A final class is not asked for names.)
-#define CLEARANCE_ABILITY(NAME, MEMBER, CONCEPT, SENTENCE)                                                    \
-  struct NAME {                                                                                               \
-    struct also {                                                                                             \
-      int MEMBER;                                                                                             \
-    };                                                                                                        \
-    template <class M>                                                                                        \
-    struct both : M, also {};                                                                                 \
-    template <class M>                                                                                        \
-    static consteval bool is_there() {                                                                        \
-      if constexpr (std::is_class_v<M> && !std::is_final_v<M>)                                                \
-        return !requires { &both<M>::MEMBER; }; /* of two, neither is meant */                                \
-      else                                                                                                    \
-        return CONCEPT<M>;                                                                                    \
-    }                                                                                                         \
-    template <class M>                                                                                        \
-    static consteval bool explain() {                                                                         \
-      static_assert(CONCEPT<M> || !(is_there<M>() || lists<M, NAME>), SENTENCE);                              \
-      static_assert(lists<M, NAME> || !(is_there<M>() && has_list<M>),                                        \
-                    "there is a member " #MEMBER ", but the list can<...> does not name the ability " #NAME); \
-      return true;                                                                                            \
-    }                                                                                                         \
+/// The body of a struct about a member that models are asked for by its name. `is_there`: has M such a member, of
+/// whatever kind? (A final class is not asked.) `needs` says SENTENCE, what the member must be, unless it is so.
+#define CLEARANCE_MEMBER(MEMBER, SENTENCE)                                   \
+  struct also {                                                              \
+    int MEMBER;                                                              \
+  };                                                                         \
+  template <class M>                                                         \
+  struct both : M, also {};                                                  \
+  template <class M>                                                         \
+  static consteval bool is_there() {                                         \
+    if constexpr (std::is_class_v<M> && !std::is_final_v<M>)                 \
+      return !requires { &both<M>::MEMBER; }; /* of two, neither is meant */ \
+    else                                                                     \
+      return false;                                                          \
+  }                                                                          \
+  template <bool IsSo>                                                       \
+  static consteval bool needs() {                                            \
+    static_assert(IsSo, SENTENCE);                                           \
+    return IsSo;                                                             \
+  }
+
+/// Declares an ability, which is a type: who has the member, or lists the ability, must have the member and fit
+/// CONCEPT.
+#define CLEARANCE_ABILITY(NAME, MEMBER, CONCEPT, SENTENCE)                                        \
+  struct NAME {                                                                                   \
+    CLEARANCE_MEMBER(MEMBER, SENTENCE)                                                            \
+    template <class M>                                                                            \
+    static consteval bool explain() {                                                             \
+      constexpr bool listed = lists<M, NAME>, there = is_there<M>();                              \
+      static_assert(listed || !there || !has_list<M>,                                             \
+                    "there is a member " #MEMBER ", but the list can<...> does not name " #NAME); \
+      return needs<!(there || listed) || (CONCEPT<M> && (there || std::is_final_v<M>))>();        \
+    }                                                                                             \
   }
 
 }  // namespace clearance

@@ -44,6 +44,13 @@ class engine {
     const auto [result, minima] = minima_of<Q>(to);
     search(poses, clouds, result, minima, frames::as_it_is{});
   }
+  /// The host waits, so that this is all.
+  template <class Clouds>
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    result_ = run(poses, clouds, q);
+  }
+  const typename Q::result& finish() const { return result_; }
+  void reserve() const {}
   void forget() const {}
 
  private:
@@ -62,6 +69,7 @@ class engine {
 
   On on_;
   model_view<PartView> model_;
+  typename Q::result result_;
 };
 
 /// On the CPU, with any tree. After the first frames of a size it allocates nothing.
@@ -81,6 +89,13 @@ class engine<host, PartView, Q> {
     }
     return result_;
   }
+  /// A host has nothing to wait for.
+  template <class Clouds>
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    run(poses, clouds, q);
+  }
+  const typename Q::result& finish() const { return result_; }
+  void reserve() const {}
   template <class Clouds>
   void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
     const auto [result, minima] = minima_of<Q>(to);

@@ -246,6 +246,7 @@ struct least {
   static __device__ bool touched(const block& s, std::uint32_t part, std::uint32_t point) {
     return scan::fresh(s.answer.least[slot(part)]) < make_key(0, point);
   }
+  static __device__ void meet(const block&, unsigned, std::uint32_t) {}
   static constexpr __device__ bool skips(const block&, std::uint32_t, std::uint32_t, std::uint32_t, vec3) {
     return false;
   }

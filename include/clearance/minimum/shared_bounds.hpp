@@ -58,6 +58,8 @@ struct shared_bounds {
   CLEARANCE_HD bool touched(std::uint32_t index, std::uint32_t k) const {
     return load_relaxed(bound_of(k)) <= make_key(0, index);
   }
+  CLEARANCE_HD bool ended(std::uint32_t) const { return false; }
+  CLEARANCE_HD bool foresees(std::uint32_t, std::uint32_t, vec3, bool, const shared_nearest&) const { return false; }
   /// With an interior, once the bound is 0, lower point numbers matter before distances.
   CLEARANCE_HD bool lowest_first(std::uint32_t k) const { return reach(k) <= 0; }
   /// Returns true if it is still unknown whether some point is certainly inside.

@@ -60,9 +60,7 @@ class query<Q, mpi::shard<On>, PartView> : public detail::callable<query<Q, mpi:
   }
 
   /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() {
-    if constexpr (requires { query_.forget(); }) query_.forget();
-  }
+  void forget() { query_.forget(); }
 
  private:
   MPI_Comm comm_;

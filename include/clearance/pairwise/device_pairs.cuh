@@ -17,14 +17,6 @@ namespace clearance::pairwise {
 
 // Labels of all points, as the blocks of a device write and count them.
 
-/// An answer that also meets every point: it has labels, one byte each, and counts those that are `own` and
-/// `uncertain`.
-template <class A>
-concept labelling_answer = answer<A> && requires(const A a, const pair_distance pair, std::uint32_t n) {
-  *a.label_of(n, n) = a.whose_alone(true);
-  a.is_late(pair), a.counts->own, a.counts->uncertain;
-};
-
 /// A block's counts of its labels.
 struct alignas(8) label_counts {
   std::uint32_t own, uncertain;
@@ -217,10 +209,9 @@ struct pairs_of {
     take_all(s, count, [](const pair_distance&) { return true; });
   }
 
-  static __device__ void meet(const block& s, unsigned reasons, std::uint32_t first)
-    requires labels
-  {
-    labels_of<pairs_of>::meet(s, reasons, first);
+  static __device__ void meet([[maybe_unused]] const block& s, [[maybe_unused]] unsigned reasons,
+                              [[maybe_unused]] std::uint32_t first) {
+    if constexpr (labels) labels_of<pairs_of>::meet(s, reasons, first);
   }
 
   struct news {

@@ -46,10 +46,12 @@ struct each_pair {
     return answer.reach(k);
   }
   CLEARANCE_HD bool settled(std::uint32_t, std::uint32_t) const { return false; }
-  CLEARANCE_HD bool ended(std::uint32_t index) const
-    requires ending_answer<Answer>
-  {
-    return answer.ended(cloud, index - first);
+  CLEARANCE_HD bool touched(std::uint32_t, std::uint32_t) const { return false; }
+  CLEARANCE_HD bool ended([[maybe_unused]] std::uint32_t index) const {
+    if constexpr (ending_answer<Answer>)
+      return answer.ended(cloud, index - first);
+    else
+      return false;
   }
   CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
     if (answer.reach(k) >= 0) answer.take({cloud, index - first, k, none, 0});

@@ -45,14 +45,27 @@ struct asked {
 
 /// A question about pairs. `out` says where a backend writes, and has `point_counts* counts`.
 ///
-/// Law: `prepare(asked, out, clouds)`, or without clouds, returns an `answer`; `conclude(asked, answer, out)`, which
-/// may be missing, enqueues what comes after the scan. `room(asked)` is an `out` in memory of `asked`, and `read(asked,
-/// out)` waits and makes the result of it.
+/// Law: `space(asked)` is an `out` in memory of `asked`. `prepare(asked, out)`, or with the clouds, returns an
+/// `answer`. `read(asked, out)` waits and makes the result of it.
 template <class Q>
 concept pair_question = question<Q> && requires(const Q q, const asked<host>& a, const typename Q::out& to) {
   { q.space(a) } -> std::same_as<typename Q::out>;
   { q.read(a, to) } -> std::same_as<typename Q::result>;
 };
+
+/// `pair_question<Q>` with reasons.
+template <class Q>
+consteval bool explain_pair_question() {
+  using from = const asked<host>&;
+  if constexpr (explain_question<Q>())
+    return detail::pair_space::needs<requires(const Q q, from a) {
+             { q.space(a) } -> std::same_as<typename Q::out>;
+           }>() && detail::pair_read::needs<requires(const Q q, from a, const typename Q::out& to) {
+             { q.read(a, to) } -> std::same_as<typename Q::result>;
+           }>();
+  else
+    return false;
+}
 
 /// What a pass over all pairs of a frame needs. It is kept from frame to frame.
 template <class On, class PartView>
@@ -101,6 +114,8 @@ class passes {
 
 template <pair_question Q, class On, class PartView>
 class engine {
+  static constexpr bool retries = retrying::is_there<Q>();
+
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
@@ -117,7 +132,7 @@ class engine {
   /// Enqueues a frame whose result `finish` waits for; `q` must stay until then.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q)
-    requires(!requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); })
+    requires(!retries)
   {
     const auto a = passes_.prepare(poses, clouds);
     asked_ = &q, to_ = q.space(a);
@@ -127,9 +142,15 @@ class engine {
   /// Waits for the last frame that was enqueued, and reads what it wrote.
   typename Q::result read(const Q& q, const typename Q::out& from) { return q.read(passes_.last(), from); }
 
+  void forget() const {}  // it knows nothing of the last frame
+
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    if constexpr (requires(const asked<On>& a, const typename Q::out& to) { q.more(a, to); }) {
+    if constexpr (retries) {
+      static_assert(retrying::needs<requires(const asked<On>& a, const typename Q::out& to, std::size_t n) {
+        { q.space(a, n) } -> std::same_as<typename Q::out>;
+        { q.more(a, to) } -> std::same_as<std::size_t>;
+      }>());
       const auto& here = passes_.readable(clouds);
       for (std::size_t least = 0;;) {  // once more, if there was not enough room
         const auto a = passes_.prepare(poses, clouds);
@@ -151,18 +172,19 @@ class engine {
     const auto answer = [&] {
       if constexpr (requires { q.prepare(a, to, clouds); })
         return q.prepare(a, to, clouds);
-      else
+      else if constexpr (detail::pair_prepare::needs<requires { q.prepare(a, to); }>())
         return q.prepare(a, to);
     }();
     using answer_type = std::remove_const_t<decltype(answer)>;
     static_assert(explain_answer<answer_type>());
     passes_.enqueue(poses, clouds, answer, counts_of(to));
-    if constexpr (requires { q.conclude(a, answer, to); }) q.conclude(a, answer, to);
+    if constexpr (concluding::is_there<Q>())
+      if constexpr (concluding::needs<requires { q.conclude(a, answer, to); }>()) q.conclude(a, answer, to);
   }
   static point_counts* counts_of(const typename Q::out& to) {
-    if constexpr (requires { Q::counts_of(to); })
+    if constexpr (counting_question<Q>)
       return Q::counts_of(to);
-    else
+    else if constexpr (counting::needs<requires { to.counts; }>())
       return to.counts;
   }
 

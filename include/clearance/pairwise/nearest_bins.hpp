@@ -19,6 +19,7 @@ struct nearest_window {
 /// An answer. Once enough points lie no farther than a bin's end, that end is a bound: farther points are none of the
 /// nearest.
 struct nearest_bins {
+  using can = clearance::can<>;
   static constexpr std::uint32_t bins = 2048;
   static constexpr int passes = 3,
                        first_shift =
@@ -60,7 +61,7 @@ struct nearest_bins {
       if ((sum += load_relaxed(its + bin)) >= w.wanted) return lower_word(&w.bound, end_of(w.low, bin, shift));
   }
 };
-static_assert(answer<nearest_bins>);
+static_assert(explain_answer<nearest_bins>());
 
 struct zero_words {
   std::uint32_t* words;

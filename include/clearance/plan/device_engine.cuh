@@ -140,9 +140,9 @@ class engine<device, PartView, Q> : public placed_batch<PartView, typename Q::se
     static_assert(explain_clouds<Clouds>());
     placed::check_placed();
     auto question = q.checked(search_.parts());
-    if constexpr (requires { question.vague; }) question.vague = any_vague(clouds);
+    if constexpr (Q::searched::by_margin) question.vague = any_vague(clouds);
     search_.set_robot(widened_(q.radii));
-    if constexpr (requires { question.margins; }) {
+    if constexpr (Q::searched::by_margin) {
       on_.stage(std::span(question.margins, question.count), margins_.data());
       question.margins = margins_.data();
     }

@@ -47,7 +47,7 @@ class engine<host, PartView, Q> {
   template <class Clouds>
   const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     auto question = q.checked(search_.parts());
-    if constexpr (requires { question.vague; }) question.vague = any_vague(clouds);
+    if constexpr (Q::searched::by_margin) question.vague = any_vague(clouds);
     search_.set_robot(widened_(q.radii));
     auto& results = Q::results(result_);
     results.resize(detail::count_configurations(search_.parts(), poses.size()) * (Q::each_part ? search_.parts() : 1));

@@ -59,6 +59,9 @@ struct within_margins {
   CLEARANCE_HD real reach_of_pair(std::uint32_t, std::uint32_t k) const { return reach(k); }
   CLEARANCE_HD void lower(std::uint32_t, std::uint32_t k, real distance) const { visitor(0, k).offer(0, distance); }
   CLEARANCE_HD bool settled(std::uint32_t, std::uint32_t k) const { return visitor(0, k).result(); }
+  CLEARANCE_HD bool touched(std::uint32_t, std::uint32_t) const { return false; }
+  CLEARANCE_HD bool ended(std::uint32_t) const { return false; }
+  CLEARANCE_HD bool foresees(std::uint32_t, std::uint32_t, vec3, bool, const near_margin&) const { return false; }
   CLEARANCE_HD bool lowest_first(std::uint32_t) const { return false; }
   CLEARANCE_HD bool take_inside(std::uint32_t, std::uint32_t k) const { return lower(0, k, 0), false; }
   CLEARANCE_HD void take_certain() const {}

@@ -24,6 +24,7 @@ struct remembered {
 template <class PartView, scan::packets_by How>
 struct points_of {
   using part_type = PartView;
+  using element = vec3;
   using hierarchy_type = typename PartView::hierarchy_type;
   using place_type = typename scan::node_of<hierarchy_type>::place;
   static constexpr scan::packets_by how = How;

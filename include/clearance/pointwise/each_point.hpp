@@ -49,6 +49,9 @@ struct each_point {
   CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
   CLEARANCE_HD real reach_of_pair(std::uint32_t index, std::uint32_t) const { return min(d_max, out.distance[index]); }
   CLEARANCE_HD bool settled(std::uint32_t index, std::uint32_t) const { return out.distance[index] <= 0; }
+  CLEARANCE_HD bool touched(std::uint32_t, std::uint32_t) const { return false; }
+  CLEARANCE_HD bool ended(std::uint32_t) const { return false; }
+  CLEARANCE_HD bool foresees(std::uint32_t, std::uint32_t, vec3, bool, const nearest&) const { return false; }
   CLEARANCE_HD bool take_inside(std::uint32_t index, std::uint32_t k) const {
     if (d_max >= 0) write(out, index, {0, k, none});
     return false;

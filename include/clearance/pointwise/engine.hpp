@@ -57,15 +57,15 @@ struct points_on<host> {
   using kept = unprepared<host, PartView>;
 };
 
-/// `Q` has d_max, in metres, and `which`; `Q::out` is where a backend writes. `Q::after(...)`, which may be missing,
-/// enqueues what comes after the scan.
+/// `Q` has `which`, and `limit()`, the farthest computed distance that counts; `Q::out` is where a backend writes.
+/// `Q::check_robot(on, model)` refuses a robot, and `Q::after(...)` enqueues what comes after the scan.
 template <class On, class PartView, class Q>
 class engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : on_(on), model_(model), memory_(on, from...), readable_(on, from...), points_{on, model, from...} {
-    if constexpr (requires { Q::check(on, model); }) Q::check(on, model);
+    Q::check_robot(on, model);
   }
 
   template <class Clouds>
@@ -102,8 +102,7 @@ class engine {
     const real d_max = q.limit();
     const distance_certainty certain =
         points_.enqueue(poses, clouds, to.distances, d_max, to.counts, frames::as_it_is{});
-    if constexpr (requires { Q::after(on_, model_, poses, clouds, to.distances); })
-      Q::after(on_, model_, poses, clouds, to.distances);
+    Q::after(on_, model_, poses, clouds, to.distances);
     return certain;
   }
 

@@ -50,7 +50,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
       facts_ = view.facts;
       for (std::size_t k = 0; k < on.size(); ++k) {
         std::pmr::memory_resource* const its = memory.empty() ? nullptr : memory[k];
-        if constexpr (requires { one::takes_pinned; })
+        if constexpr (pinning_engine<one>)
           each_.emplace_back(on.each()[k], view.each[k], asked, its, pinned);
         else
           each_.emplace_back(on.each()[k], view.each[k], asked, its);
@@ -70,7 +70,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
     detail::joined_of<Q, PartView> all(q, facts_);
     const auto piece = [&](std::size_t k) { return mapped_clouds(clouds, detail::one_piece{k, n}); };
     const auto place = [&](std::size_t k) { return numbers_.place(clouds, detail::one_piece{k, n}); };
-    if constexpr (requires { each_[0].begin(poses, piece(0), q), each_[0].finish(); }) {
+    if constexpr (beginning_engine<one, Q>) {
       try {
         for (std::size_t k = 0; k < n; ++k) each_[k].begin(poses, piece(k), q);
         for (std::size_t k = 0; k < n; ++k) all.add(each_[k].finish(), place(k));
@@ -97,8 +97,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
 
   /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() {
-    if constexpr (requires(one& its) { its.forget(); })
-      for (one& its : each_) its.forget();
+    for (one& its : each_) its.forget();
   }
 
  private:

@@ -18,7 +18,7 @@ class joined_by_merge {
   joined_by_merge(const Q&, std::span<const part_facts>) {}
 
   void add(typename Q::result piece, const piece_place& place) {
-    if constexpr (requires { Q::place_in_whole(piece, place); }) Q::place_in_whole(piece, place);
+    if constexpr (numbering_question<Q>) Q::place_in_whole(piece, place);
     if (all_)
       Q::merge(*all_, piece);
     else
@@ -33,14 +33,14 @@ class joined_by_merge {
 template <class Q, class PartView>
 struct joined_for {
   static_assert(
-      requires(typename Q::result& all, const typename Q::result& other) { Q::merge(all, other); },
+      merging_question<Q>,
       "this question cannot be asked about pieces of the clouds (several devices, chunks, ranks, a deadline): its "
       "results "
       "cannot be merged. A question of your own needs: static void merge(result& all, const result& other)");
   using type = joined_by_merge<Q>;
 };
 template <class Q, class PartView>
-  requires requires { typename Q::template joined<PartView>; }
+  requires joining_question<Q>
 struct joined_for<Q, PartView> {
   using type = typename Q::template joined<PartView>;
 };

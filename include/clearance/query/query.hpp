@@ -5,7 +5,7 @@
 #include <clearance/backends/one_call.hpp>
 #include <clearance/backends/plain.hpp>
 #include <clearance/frames/clouds.hpp>
-#include <clearance/pairwise/engine.hpp>
+#include <clearance/query/engine.hpp>
 #include <clearance/robot/model.hpp>
 
 #include <atomic>
@@ -99,13 +99,12 @@ class one_robot {
   std::shared_ptr<const buffer> own_;  // an engine looks at it, and so do its copies
 };
 
-/// Throws std::invalid_argument for options that no frame could mend: what the question's optional members
-/// `check(parts)` or `check()` refuse.
+/// Throws std::invalid_argument for options that no frame could mend: what a `checking_question` refuses.
 template <class Q>
 void check_options(const Q& q, std::size_t parts) {
   if constexpr (requires { q.check(parts); })
     q.check(parts);
-  else if constexpr (requires { q.check(); })
+  else if constexpr (checking_question<Q>)
     q.check();
 }
 
@@ -204,17 +203,6 @@ namespace clearance {
 
 namespace detail {
 
-/// What answers a question on one backend: its own engine, or the one for questions about pairs.
-template <class Q, class On, class PartView>
-struct engine_of {
-  using type = pairwise::engine<Q, On, PartView>;
-};
-template <class Q, class On, class PartView>
-  requires requires { typename Q::template engine<On, PartView>; }
-struct engine_of<Q, On, PartView> {
-  using type = typename Q::template engine<On, PartView>;
-};
-
 /// Where a backend writes, for a question that can be enqueued so.
 struct nowhere {
   nowhere() = delete;
@@ -223,8 +211,7 @@ template <class Q>
 struct out_of {
   using type = nowhere;
 };
-template <class Q>
-  requires requires { typename Q::out; }
+template <writing_question Q>
 struct out_of<Q> {
   using type = typename Q::out;
 };
@@ -262,7 +249,7 @@ class query : detail::one_robot<On, PartView>,
   template <class Robot, class... Memory>
   query(const On& on, const Robot& robot, const Q& asked, Memory... memory)
       : robot_type(on, robot), engine(on, robot_type::view(), memory...), callable(asked) {
-    static_assert(detail::explain_asked<On, Robot, Q>());
+    static_assert(detail::explain_asked<On, Robot, Q>() && explain_engine<engine, Q>());
     detail::check_options(asked, robot_type::view().size());
   }
   template <owning_robot Robot, class... Memory>

@@ -177,6 +177,7 @@ struct certain_distance {
   std::vector<part_radius> parts = {};
 
   using result = certain_distance_result;
+  using can = clearance::can<checking, joining, partial>;
   template <class On, class PartView>
   class engine;
   template <class PartView>
@@ -211,7 +212,7 @@ class certain_distance::engine {
         search_(on, model, from...),
         memory_(on, from...),
         readable_(on, from...) {
-    if constexpr (requires { search_.reserve(); }) nominal_.reserve(), search_.reserve();
+    nominal_.reserve(), search_.reserve();
   }
 
   template <class Clouds>
@@ -220,20 +221,16 @@ class certain_distance::engine {
     const auto& here = readable_(clouds);
     result r;
     const auto measured = mapped_clouds(here, as_measured{});
-    min_distance_per_part_result certain;
-    constexpr bool enqueues = requires { search_.begin(poses, here, min_distance_per_part{}); };
-    if constexpr (enqueues) {  // the host need not wait between the searches
-      nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
-      r.nominal = nominal_.finish(), certain = search_.finish();
-    } else {
-      r.nominal = nominal_.run(poses, measured, min_distance{});
-      certain = search_.run(poses, here, min_distance_per_part{});
-    }
+    nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
+    r.nominal = nominal_.finish();
+    const min_distance_per_part_result& certain = search_.finish();
     r.any_radius = read(poses, here, certain.parts, r.nominal) || !q.parts.empty();
     tell(q, certain, r);
     minimum::conclude(r);
     return r;
   }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() { nominal_.forget(), search_.forget(); }
 
  private:
   /// Is there an uncertain cloud?

@@ -13,6 +13,7 @@ struct collect {
   Answer answer;
 
   using result = point_counts;
+  using can = clearance::can<>;
   struct out {
     point_counts* counts;
   };

@@ -29,6 +29,7 @@ struct distances {
   bool which = false;       ///< Also which part and primitive is nearest.
 
   using result = point_distances;
+  using can = clearance::can<checking, joining>;
   /// One entry per point of all clouds, in memory that the backend writes.
   struct out {
     distances_out distances;
@@ -42,6 +43,11 @@ struct distances {
   void check() const { limit(); }
   /// The farthest computed distance that counts.
   real limit() const { return frames::largest_within(d_max); }
+  template <class On, class PartView>
+  static void check_robot(const On&, const model_view<PartView>&) {}
+  template <class On, class PartView, class Clouds>
+  static void after(const On&, const model_view<PartView>&, std::span<const Eigen::Isometry3d>, const Clouds&,
+                    const distances_out&) {}
 };
 
 }  // namespace clearance

@@ -33,6 +33,7 @@ namespace pairwise {
 
 /// An answer: writes each pair's distance in its place, part after part. Places of pairs beyond `d_max` are left alone.
 struct written {
+  using can = clearance::can<>;
   real* distance;
   const std::uint32_t* first_point;  ///< Per cloud.
   std::size_t points;                ///< Of all clouds.
@@ -43,7 +44,7 @@ struct written {
     distance[pair.part * points + first_point[pair.cloud] + pair.point] = pair.distance;
   }
 };
-static_assert(answer<written>);
+static_assert(explain_answer<written>());
 
 /// Before the scan: every point of a source is too far away, or no point (NaN).
 template <point_source Source>
@@ -83,6 +84,7 @@ struct distances_per_part {
   double d_max = infinity;  ///< Metres; farther points are `+inf`.
 
   using result = part_distances;
+  using can = clearance::can<checking, joining>;
   /// Part k's distances go to `distance[k * points]` and on, in memory that the backend writes.
   struct out {
     real* distance;

@@ -27,6 +27,7 @@ namespace pairwise {
 /// An answer: the first pair within margins, certain pairs before uncertain ones. Pairs after a certain one are not
 /// looked at.
 struct first_within {
+  using can = clearance::can<settling, ending, coarse>;
   unsigned long long* word;  ///< One bit: not certain; then the point's number through all clouds; then the part.
   const real *may_be, *is;   ///< One of each per part.
   const std::uint32_t* first_point;  ///< Per cloud.
@@ -50,7 +51,7 @@ struct first_within {
     if (mine < load_relaxed(word)) lower_to(word, mine);
   }
 };
-static_assert(ending_answer<first_within> && coarse_answer<first_within>);
+static_assert(explain_answer<first_within>());
 
 /// Makes the result of what a scan keeps; `result` has the counts already.
 struct tell_collision {
@@ -81,6 +82,7 @@ struct in_collision {
   std::vector<double> radii = {};       ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = collision_result;
+  using can = clearance::can<checking, counting, concluding, skipping, numbering, merging, partial>;
   using out = collision_result*;  ///< In memory that the backend writes.
 
   void check(std::size_t parts) const { frames::check_margins(margins, parts), check_radii(radii, parts); }

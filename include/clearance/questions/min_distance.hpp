@@ -72,6 +72,7 @@ inline void allow_for_unseen(min_distance_result& r, std::uint64_t unseen) {
 /// The least distance over all parts and all points, with its bracket and witness.
 struct min_distance {
   using result = min_distance_result;
+  using can = clearance::can<joining, chunking, partial>;
   using out = min_distance_result*;  ///< In memory that the backend writes.
   static constexpr bool per_part = false;
   template <class On, class PartView>
@@ -93,6 +94,7 @@ struct min_distance_per_part_result {
 /// The least distance of the robot, and of each part: each has its own bound.
 struct min_distance_per_part {
   using result = min_distance_per_part_result;
+  using can = clearance::can<joining, chunking, partial>;
   struct out {
     min_distance_result* result;
     part_minimum* minima;  ///< One per part.

@@ -13,6 +13,7 @@ struct nearest_k {
   double d_max = infinity;  ///< Metres; farther points do not count.
 
   using result = nearest_k_result;
+  using can = clearance::can<checking, numbering, merging>;
   /// Enqueued, the backend decides how near the k nearest points of each part are, and lists all pairs that are as
   /// near, in any order: k for each part, fewer if there are fewer, and more if some are equally far as the k-th.
   /// `count` becomes how many there are: if that is more than `capacity`, some were cut.

@@ -54,6 +54,7 @@ struct part_witnesses {
   borrowed<part_minimum> minima;  ///< As min_distance_per_part gives them.
 
   using result = std::vector<part_witness>;
+  using can = clearance::can<>;
   /// `minima`, which `enqueue` reads instead, and `witnesses`, one each per part, in memory that the backend reads and
   /// writes. Enqueued, a minimum of other poses or clouds has no witness.
   struct out {
@@ -93,6 +94,7 @@ class part_witnesses::engine {
     memory_.begin();
     evaluate_all(poses, clouds, to.minima, to.witnesses);
   }
+  void forget() const {}  // it knows nothing of the last frame
 
  private:
   template <class Clouds>

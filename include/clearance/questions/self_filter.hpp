@@ -36,6 +36,7 @@ struct paddings {
 /// The answer: a label for each point of all clouds. Once a point is certainly the robot's, the other parts are not
 /// asked.
 struct own_points {
+  using can = clearance::can<settling, coarse, labelling>;
   static constexpr std::uint32_t few_clouds = 4;
 
   point_label* labels;  ///< Initially `whose_alone`: what a point is if no part is near it.
@@ -69,7 +70,7 @@ struct own_points {
   /// True for a certain pair. It comes after its point's other pairs, so that its label is not overwritten.
   CLEARANCE_HD bool is_late(const pair_distance& pair) const { return pair.distance <= near.is(pair.part); }
 };
-static_assert(settling_answer<own_points> && coarse_answer<own_points>);
+static_assert(explain_answer<own_points>());
 
 /// Before a scan that does not meet every point: sets the counts to 0,
 struct forget_labels {
@@ -179,6 +180,7 @@ struct self_filter {
   std::vector<double> padding = {0.01};
 
   using result = self_filter_result;
+  using can = clearance::can<checking, counting, concluding, joining>;
   /// One label per point of all clouds, in memory that the backend writes. The next work in a stream may ask about
   /// `masked_clouds(clouds, labels)`.
   struct out {

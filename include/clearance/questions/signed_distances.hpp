@@ -45,6 +45,7 @@ struct signed_distances {
   bool which = false;       ///< Also which part and triangle is nearest.
 
   using result = point_distances;
+  using can = clearance::can<choosing, checking, joining>;
   using out = distances::out;
   template <class On, class PartView>
   using engine = pointwise::engine<On, PartView, signed_distances>;
@@ -62,7 +63,7 @@ struct signed_distances {
     return frames::largest_within(d_max);
   }
   template <class On, class PartView>
-  static void check(const On&, const model_view<PartView>& model) {
+  static void check_robot(const On&, const model_view<PartView>& model) {
     static_assert(
         about<PartView>,
         "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "

@@ -186,7 +186,7 @@ struct unseen {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = unseen_result;
-  static constexpr bool of_images = true;  ///< No other source says what it hides.
+  using can = clearance::can<checking, of_images>;
   template <class On, class PartView>
   class engine;
 
@@ -277,6 +277,10 @@ class unseen::engine {
     });
     minimum::join(std::span<const camera>(cameras_).first(used_), q.room.farthest, q.radii, q.edges, model_.size(), r);
     return r;
+  }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() {
+    for (search& its : searches_) its.forget();
   }
 
  private:

@@ -21,6 +21,7 @@ namespace pairwise {
 
 /// An answer: a list of pairs in the order in which they are found.
 struct listed {
+  using can = clearance::can<>;
   pair_distance* pairs;
   unsigned long long* count;  ///< Counts all pairs; those beyond `capacity` are not kept.
   unsigned long long capacity;
@@ -31,7 +32,7 @@ struct listed {
     if (const unsigned long long i = take_number(count); i < capacity) pairs[i] = pair;
   }
 };
-static_assert(answer<listed>);
+static_assert(explain_answer<listed>());
 
 /// Puts pairs in order: by part, distance, cloud and point.
 inline void put_in_order(within_result& r, std::size_t parts) {
@@ -51,6 +52,7 @@ struct within {
   std::vector<double> radius;  ///< Metres: one for all parts, or one per part.
 
   using result = within_result;
+  using can = clearance::can<checking, retrying, skipping, numbering, merging>;
   /// Up to `capacity` pairs, in any order, in memory that the backend writes; `count` becomes how many there are: if
   /// that is more, some were cut.
   struct out {

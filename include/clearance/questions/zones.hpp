@@ -66,6 +66,7 @@ struct zone_words {
 /// The answer: zones of each part, the innermost first. A point is counted in its innermost zone. Its exact distance
 /// matters only if it may be the nearest.
 struct count_in_zones {
+  using can = clearance::can<coarse>;
   static constexpr std::uint32_t copies =
       8;  ///< Copies of all words, so that threads do not wait for one another. They are joined at the end.
 
@@ -118,7 +119,7 @@ struct count_in_zones {
     return z;
   }
 };
-static_assert(coarse_answer<count_in_zones>);
+static_assert(explain_answer<count_in_zones>());
 
 /// Before the scan: empties all zones.
 struct empty_zones {
@@ -166,6 +167,7 @@ struct zones {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = zones_result;
+  using can = clearance::can<checking, concluding, skipping, numbering, merging, partial>;
   /// Zones ordered as in the result, in memory that the backend writes.
   struct out {
     zone* zones;

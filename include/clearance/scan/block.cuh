@@ -111,7 +111,7 @@ struct pair_memory : block_memory<Tally> {
 
   std::uint32_t pairs, given;
   unsigned overflow_lock;
-  pair_of<typename element_of_tally<Tally>::type> pair_table[pair_capacity];
+  pair_of<typename Tally::element> pair_table[pair_capacity];
   std::uint16_t part_of_pair[pair_capacity];
   pending_type stack[warps][stack_capacity];
   pending_type given_nodes[given_capacity];

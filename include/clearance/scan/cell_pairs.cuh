@@ -18,9 +18,9 @@ namespace clearance::scan {
 template <class Tally>
 struct pair_elements : tree_steps<Tally> {
   using frame = frame_parts<Tally>;
-  using element = typename element_of_tally<Tally>::type;
+  using element = typename Tally::element;
 
-  static constexpr bool sight = requires { requires decltype(frame::here().head.answer.around)::sight; };
+  static constexpr bool sight = decltype(frame::here().head.answer.around)::sight;
   /// What many tests against balls take of a capsule.
   using root_element = std::conditional_t<sight, frames::sight_test, frames::capsule_test>;
   /// That of a point of this cloud less the origin; it passes no test if there is no such point.

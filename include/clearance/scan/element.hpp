@@ -64,16 +64,6 @@ auto elements_of(const S& source) {
   else
     return as_points{};
 }
-/// What a tally's pairs hold.
-template <class Tally>
-struct element_of_tally {
-  using type = vec3;
-};
-template <class Tally>
-  requires requires { typename Tally::element; }
-struct element_of_tally<Tally> {
-  using type = typename Tally::element;
-};
 
 template <bounding_volume V>
 CLEARANCE_HD real bound_of(const V& v, vec3 q, real) {

@@ -10,7 +10,7 @@ namespace clearance::scan {
 template <class Tally>
 __device__ real limit_for(const ball& around, real reach) {
   const real limit = frames::limit(around, reach);
-  return std::is_same_v<typename element_of_tally<Tally>::type, vec3> ? limit : max(limit, 0);
+  return std::is_same_v<typename Tally::element, vec3> ? limit : max(limit, 0);
 }
 
 /// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No

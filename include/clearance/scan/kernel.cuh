@@ -124,8 +124,7 @@ __global__ void __launch_bounds__(block_threads, 2)
       };
       quad_points p = r < ahead && !again ? reader.points_of(r) : points_now();
       if (p.reasons != 0 && !again) dropped.add(p.reasons, s.dropped);
-      if constexpr (requires { Tally::meet(s, p.reasons, r); })
-        if (!again) Tally::meet(s, p.reasons, all.index(r));
+      if (!again) Tally::meet(s, p.reasons, all.index(r));
       if (shifted) shift<Tally>(p);
       if (!hand_over<Tally>(p, [&] { return all.index(r); }, clusters, left)) break;
     }

@@ -168,7 +168,7 @@ class launcher {
   /// Enqueues the kernel. Throws std::invalid_argument for too many points: it numbers more than there are.
   template <class Tally, point_source Source>
   void operator()(const Source& source, scan_arguments<Tally>& a) {
-    if constexpr (std::is_same_v<typename element_of_tally<Tally>::type, vec3>) static_assert(points_alone<Source>());
+    if constexpr (std::is_same_v<typename Tally::element, vec3>) static_assert(points_alone<Source>());
     const std::uint64_t end = std::uint64_t(a.first) + source.size();
     if (const std::uint32_t most = none - block_threads * 8 * processors_; end >= most)
       throw std::invalid_argument("clearance: " + std::to_string(end) +

@@ -59,12 +59,12 @@ struct scan_body {
     const PartView& part = parts[k];
     const auto q = moved(place.part_from_cloud, p);
     auto ask = answer.visitor(index, k);
-    if constexpr (requires { answer.foresees(index, k, q, has_interior<PartView>, ask); })
+    constexpr bool point = std::is_same_v<Element, vec3>;
+    if constexpr (point)
       if (answer.foresees(index, k, q, has_interior<PartView>, ask)) return;
     if constexpr (has_interior<PartView>) {
       if (answer.settled(index, k)) return;
-      constexpr bool point = std::is_same_v<Element, vec3>;
-      if constexpr (!point && requires { answer.touched(index, k); })
+      if constexpr (!point)
         if (p.radius == 0 && answer.touched(index, k)) return;
       if (const vec3 start = start_of(q); part.interior.inside(start)) {
         if (answer.take_inside(index, k) && point && certainly_inside(part, start, place.error, walk))

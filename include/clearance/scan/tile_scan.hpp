@@ -298,8 +298,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
       box = box_of(t);
       loaded = true;
     }
-    if constexpr (requires { body.answer.ended(body.first); })
-      if (body.answer.ended(body.first + std::uint32_t(i))) continue;
+    if (body.answer.ended(body.first + std::uint32_t(i))) continue;
     if (beside(box, near_robot)) continue;
     std::uint32_t k = 0;
     while (k < body.part_count && !may_reach(body.places[k].around, reach(k), box)) ++k;
