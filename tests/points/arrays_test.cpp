@@ -25,7 +25,7 @@
 namespace arrays_test {
 
 using namespace testing;
-using clearance::point_span, clearance::strided_points, clearance::coordinate_arrays, clearance::on_device,
+using clearance::point_span, clearance::strided_points, clearance::coordinate_arrays, clearance::in_device_memory,
     clearance::placed, clearance::points_of, clearance::points_in, clearance::host, clearance::ask;
 
 namespace {
@@ -95,8 +95,8 @@ static_assert(becomes<std::vector<padded>, strided_points<float>> &&
               becomes<std::vector<doubles>, strided_points<double>>);
 static_assert(becomes<std::vector<turned>, strided_points<float>> &&
               becomes<std::vector<pcl_like>, strided_points<float>>);
-static_assert(becomes<far_vector<tight>, on_device<point_span>>);
-static_assert(becomes<far_vector<doubles>, on_device<strided_points<double>>>);
+static_assert(becomes<far_vector<tight>, in_device_memory<point_span>>);
+static_assert(becomes<far_vector<doubles>, in_device_memory<strided_points<double>>>);
 template <class T>
 constexpr bool is_none = !clearance::point_container<T>;
 static_assert(is_none<std::vector<mixed>> && is_none<std::vector<counted_in_millimetres>> &&
@@ -132,13 +132,13 @@ static_assert(!hidden<std::tuple<far_vector<tight>>> && !hidden<std::vector<far_
 /// That points are in a device's memory is known of whatever views them.
 template <class T>
 constexpr bool known_of = clearance::detail::some_on_device<T>;
-using far_span = on_device<point_span>;
+using far_span = in_device_memory<point_span>;
 static_assert(known_of<far_vector<tight>> && known_of<std::vector<far_vector<tight>>> && known_of<far_span>);
 static_assert(known_of<std::tuple<point_span, placed<far_span>>> && known_of<std::variant<point_span, far_span>>);
 static_assert(known_of<clearance::masked<far_span>> && known_of<std::vector<clearance::sharded<far_span>>>);
 static_assert(known_of<clearance::uncertain<far_span>> && known_of<clearance::in_memory<far_span>>);
 static_assert(known_of<decltype(clearance::slice(std::declval<far_span>(), 0, 1))>);
-static_assert(known_of<decltype(clearance::slice(std::declval<on_device<strided_points<>>>(), 0, 1))>);
+static_assert(known_of<decltype(clearance::slice(std::declval<in_device_memory<strided_points<>>>(), 0, 1))>);
 static_assert(!known_of<std::vector<vec3>> && !known_of<std::tuple<point_span, placed<point_span>>>);
 
 struct given {

@@ -25,14 +25,14 @@ concept xyz_record = std::is_standard_layout_v<T> && std::is_trivially_copyable_
 
 /// A source in a device's memory, which a host must not read. Its type says so, for the question that is asked.
 template <point_source S>
-struct on_device : S {
+struct in_device_memory : S {
   static constexpr bool only_on_device = true;
 
-  CLEARANCE_HD on_device(const S& source) : S(source) {}
+  CLEARANCE_HD in_device_memory(const S& source) : S(source) {}
 
   CLEARANCE_HD auto slice(std::size_t begin, std::size_t end) const {
     const auto piece = clearance::slice(static_cast<const S&>(*this), begin, end);
-    return on_device<std::remove_const_t<decltype(piece)>>(piece);
+    return in_device_memory<std::remove_const_t<decltype(piece)>>(piece);
   }
 };
 
@@ -59,7 +59,7 @@ const S& read_here(const S& source) {
   return source;
 }
 template <point_source S>
-const S& read_here(const on_device<S>& source) {
+const S& read_here(const in_device_memory<S>& source) {
   return source;
 }
 
@@ -126,7 +126,7 @@ auto marked(const S& source) {
   if constexpr (OnHost)
     return source;
   else
-    return on_device<S>(source);
+    return in_device_memory<S>(source);
 }
 
 }  // namespace detail
