@@ -121,6 +121,7 @@ class chunked_query {
   /// As `query`; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object again.
   template <class Poses, loaded_cloud C>
   typename Q::result operator()(const Poses& poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, const Q& q) {
+    static_assert(detail::explain_readable<On, C>());
     const detail::in_use::call only(used_);
     return engine_.run(detail::as_poses(poses), cloud, pose, q);
   }

@@ -4,7 +4,7 @@
 
 #include <clearance/concepts/capsule.hpp>
 #include <clearance/frames/frame.hpp>
-#include <clearance/points/point_span.hpp>
+#include <clearance/points/arrays.hpp>
 
 #include <stdexcept>
 #include <string>
@@ -13,22 +13,30 @@
 
 namespace clearance {
 
-/// A point source and its pose, world-from-source.
+/// A point source, or that of an array of points, and its pose, world-from-source.
 template <point_source S>
 struct placed {
   S source;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+
+  placed() = default;
+  placed(const S& source, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) : source(source), pose(pose) {}
+  template <point_container C>
+    requires std::is_same_v<points_in<C>, S>
+  placed(const C& points CLEARANCE_LIFETIMEBOUND, const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity())
+      : source(points_of(points)), pose(pose) {}
+  template <owning_points C>
+  placed(const C&&, const Eigen::Isometry3d& = Eigen::Isometry3d::Identity()) = delete;  // its points would be gone
 };
-// Needed because clang before 17 deduces no arguments from aggregates.
-template <point_source S>
-placed(S) -> placed<S>;
-template <point_source S>
-placed(S, Eigen::Isometry3d) -> placed<S>;
+template <point_container C>
+placed(const C&) -> placed<points_in<C>>;
+template <point_container C>
+placed(const C&, const Eigen::Isometry3d&) -> placed<points_in<C>>;
 
 namespace detail {
 
 template <class T>
-struct is_cloud : std::bool_constant<point_source<T> || std::is_convertible_v<const T&, point_span>> {};
+struct is_cloud : std::bool_constant<point_source<T> || point_container<T>> {};
 template <point_source S>
 struct is_cloud<placed<S>> : std::true_type {};
 template <class... T>
@@ -36,20 +44,33 @@ struct is_cloud<std::tuple<T...>> : std::bool_constant<(is_cloud<T>::value && ..
 template <class... T>
 struct is_cloud<std::variant<T...>> : std::bool_constant<(is_cloud<T>::value && ...)> {};
 template <class T>
-  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && requires(const T t) { std::begin(t); }
+  requires(!point_source<T> && !point_container<T>) && requires(const T t) { std::begin(t); }
 struct is_cloud<T> : is_cloud<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>> {};
 
 template <class T>
 inline constexpr bool one_in_each_place = false;
 template <class T>
-  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) &&
-              requires(const T t) { std::begin(t), std::size(t); }
+  requires(!point_source<T> && !point_container<T>) && requires(const T t) { std::begin(t), std::size(t); }
 inline constexpr bool one_in_each_place<T> =
     requires(std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))> cloud) { cloud.source, cloud.pose; };
 
+/// Are some clouds in a device's memory?
+template <class T>
+inline constexpr bool some_on_device = only_on_device<T>();
+template <point_container C>
+inline constexpr bool some_on_device<C> = only_on_device<points_in<C>>();
+template <class... T>
+inline constexpr bool some_on_device<std::tuple<T...>> = (some_on_device<T> || ...);
+template <class... T>
+inline constexpr bool some_on_device<std::variant<T...>> = (some_on_device<T> || ...);
+template <class T>
+  requires(!point_source<T> && !point_container<T>) && requires(const T t) { std::begin(t); }
+inline constexpr bool some_on_device<T> =
+    some_on_device<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>;
+
 }  // namespace detail
 
-/// What callers may pass as clouds: a source, a placed one or a vector of points; a range, tuple or variant of these.
+/// What callers may pass as clouds: a source, a placed one or an array of points; a range, tuple or variant of these.
 template <class T>
 concept clouds_of_any_kind = detail::is_cloud<T>::value;
 
@@ -58,11 +79,12 @@ template <clouds_of_any_kind Clouds, class F>
 void for_each_cloud(const Clouds& clouds, F&& f) {
   static const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
   if constexpr (point_source<Clouds>) {
-    f(clouds, here);
+    f(detail::read_here(clouds), here);
   } else if constexpr (requires { clouds.source, clouds.pose; }) {
-    f(clouds.source, clouds.pose);
-  } else if constexpr (std::is_convertible_v<const Clouds&, point_span>) {
-    f(point_span(clouds), here);
+    f(detail::read_here(clouds.source), clouds.pose);
+  } else if constexpr (point_container<Clouds>) {
+    const auto source = points_of(clouds);
+    f(detail::read_here(source), here);
   } else if constexpr (requires { std::tuple_size<Clouds>::value; }) {
     std::apply([&](const auto&... each) { (for_each_cloud(each, f), ...); }, clouds);
   } else if constexpr (requires { std::variant_size<Clouds>::value; }) {
@@ -140,6 +162,8 @@ consteval bool explain_given() {
                 "Eigen::Isometry3d");
   if constexpr (!fits)
     return false;
+  else if constexpr (point_container<First>)
+    return true;
   else if constexpr (sizeof...(Rest) == 1)
     return explain_point_source<First>();
   else
@@ -155,7 +179,7 @@ const Clouds& as_clouds(const Clouds& clouds) {
 template <class S, class Pose>
 auto as_clouds(const S& source, const Pose& pose) {
   static_assert(explain_given<S, Pose>());
-  return placed<S>{source, pose};
+  return placed{source, pose};
 }
 
 namespace frames {

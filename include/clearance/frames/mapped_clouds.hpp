@@ -26,9 +26,12 @@ struct mapped<S, F> {
   using type = std::invoke_result_t<F&, const S&>;
   static type of(const S& source, F& f) { return f(source); }
 };
-template <class T, class F>
-  requires(!point_source<T> && std::is_convertible_v<const T&, point_span>)
-struct mapped<T, F> : mapped<point_span, F> {};
+template <point_container C, class F>
+struct mapped<C, F> {
+  using one = mapped<points_in<C>, F>;
+  using type = typename one::type;
+  static type of(const C& points, F& f) { return one::of(points_of(points), f); }
+};
 template <point_source S, class F>
 struct mapped<placed<S>, F> {
   using type = placed<typename mapped<S, F>::type>;
@@ -64,13 +67,13 @@ namespace detail {
 
 /// Do clouds keep points themselves, as a vector of points does, and not views of them?
 template <class T>
-inline constexpr bool keeps_points = owning_range<T> && !point_source<T> && std::is_convertible_v<const T&, point_span>;
+inline constexpr bool keeps_points = owning_points<T>;
 template <class... T>
 inline constexpr bool keeps_points<std::tuple<T...>> = (keeps_points<T> || ...);
 template <class... T>
 inline constexpr bool keeps_points<std::variant<T...>> = (keeps_points<T> || ...);
 template <class T>
-  requires(!point_source<T> && !std::is_convertible_v<const T&, point_span>) && owning_range<T>
+  requires(!point_source<T> && !point_container<T>) && owning_range<T>
 inline constexpr bool keeps_points<T> = keeps_points<std::ranges::range_value_t<T>>;
 template <class T>
 concept owning_clouds = keeps_points<T>;

@@ -13,9 +13,11 @@
 
 namespace clearance {
 
-/// A range that owns its elements: a view of a temporary one would look at freed memory.
+/// A range that owns its elements: a view of a temporary one would look at freed memory. Spans of any library name the
+/// type that they view.
 template <class R>
-concept owning_range = std::ranges::contiguous_range<R> && !std::ranges::borrowed_range<R>;
+concept owning_range =
+    std::ranges::contiguous_range<R> && !std::ranges::borrowed_range<R> && !requires { typename R::element_type; };
 
 /// A std::span<const T> that is not made of a temporary vector or array.
 template <class T>

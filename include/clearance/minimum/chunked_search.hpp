@@ -87,6 +87,8 @@ class chunked {
 };
 template <point_source S>
 chunked(S, std::size_t = 0) -> chunked<in_memory<S>>;
+template <point_container C>
+chunked(const C&, std::size_t = 0) -> chunked<in_memory<points_in<C>>>;
 
 namespace minimum {
 

@@ -30,11 +30,12 @@ namespace clearance {
 
 /// A prepared question, with one prepared on each rank.
 template <question Q, class On, class PartView>
-class query<Q, mpi::shard<On>, PartView> : public detail::callable<query<Q, mpi::shard<On>, PartView>, Q> {
+class query<Q, mpi::shard<On>, PartView>
+    : public detail::callable<query<Q, mpi::shard<On>, PartView>, mpi::shard<On>, Q> {
  public:
   template <class Robot, class... Memory>
   query(const mpi::shard<On>& on, const Robot& robot, const Q& asked, Memory... memory)
-      : detail::callable<query, Q>(asked),
+      : detail::callable<query, mpi::shard<On>, Q>(asked),
         comm_(on.comm),
         facts_(detail::facts_of(robot)),
         query_(on.on, robot, asked, memory...) {}

@@ -2,7 +2,7 @@
 #pragma once
 // Clouds that are loaded one range at a time: they may be larger than a device's memory, or the host's.
 
-#include <clearance/points/slice.hpp>
+#include <clearance/points/arrays.hpp>
 
 #include <stdexcept>
 #include <string>
@@ -31,7 +31,8 @@ template <class C>
 concept addressed_cloud =
     loaded_cloud<C> && requires(const C c) { requires point_source<std::remove_cvref_t<decltype(c.whole())>>; };
 
-/// A source in memory of any kind: host memory, pinned or not, or a device's. `chunked` makes it from a source.
+/// A source in memory of any kind: host memory, pinned or not, or a device's. `chunked` makes it from a source or an
+/// array of points.
 template <point_source S>
 struct in_memory {
   static constexpr bool in_place = true;
@@ -39,6 +40,11 @@ struct in_memory {
   S source;
 
   in_memory(const S& source) : source(source) {}
+  template <point_container C>
+    requires std::is_same_v<points_in<C>, S>
+  in_memory(const C& points CLEARANCE_LIFETIMEBOUND) : source(points_of(points)) {}
+  template <owning_points C>
+  in_memory(const C&&) = delete;  // the points would be gone before they are read; name them
 
   std::size_t size() const { return source.size(); }
   std::size_t bytes_for(std::size_t) const { return 0; }

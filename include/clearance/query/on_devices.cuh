@@ -34,14 +34,14 @@ struct one_call<devices> {
 /// is on each device (`model.on(devices)`). Clouds in host memory (and in another device's) are copied in slices, one
 /// to each device; `shard`ed clouds are read where they are. Pinned memory is copied to all devices at once.
 template <question Q, class PartView>
-class query<Q, devices, PartView> : public detail::callable<query<Q, devices, PartView>, Q> {
+class query<Q, devices, PartView> : public detail::callable<query<Q, devices, PartView>, devices, Q> {
  public:
   /// `memory`: nothing, or for each device a resource that hands out its memory; `pinned`: a resource that hands out
   /// pinned memory. Throws std::invalid_argument if the robot is not on these devices, and as on one device.
   template <class Robot>
   query(const devices& on, const Robot& robot, const Q& asked, std::span<std::pmr::memory_resource* const> memory = {},
         std::pmr::memory_resource* pinned = kept_pinned())
-      : detail::callable<query, Q>(asked), on_(on) {
+      : detail::callable<query, devices, Q>(asked), on_(on) {
     static_assert(
         requires { robot.view().each; }, "several devices take a robot that is on each of them: model.on(devices)");
     if constexpr (requires { robot.view().each; }) {

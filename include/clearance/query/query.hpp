@@ -130,8 +130,18 @@ std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
   }
 }
 
+/// Can `On` read these clouds? With a reason if not.
+template <class On, class Clouds>
+consteval bool explain_readable() {
+  constexpr bool fits = !std::is_same_v<backend_of_t<On>, host> || !some_on_device<Clouds>;
+  static_assert(fits,
+                "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
+                "them into a thrust::host_vector");
+  return fits;
+}
+
 /// How every prepared question is asked. `Query` has `run(poses, clouds, question)`, and what else it can.
-template <class Query, class Q>
+template <class Query, class On, class Q>
 class callable {
  public:
   /// Blocks until the answer is there. `poses` are world-from-part, one per part; `clouds` is a point source, a
@@ -139,7 +149,7 @@ class callable {
   /// copied. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or an option cannot be.
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) & {
-    static_assert(explain_given<Clouds>());
+    static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
     const in_use::call only(used_);
     return self().run(as_poses(poses), clouds, q);
   }
@@ -161,6 +171,7 @@ class callable {
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) & {
+    static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
     const in_use::call only(used_);
     return self().run_chain(chain, joints, clouds, q);
   }
@@ -239,9 +250,9 @@ consteval bool explain_asked() {
 template <question Q, class On, class PartView>
 class query : detail::one_robot<On, PartView>,
               public detail::engine_of<Q, On, PartView>::type,
-              public detail::callable<query<Q, On, PartView>, Q> {
+              public detail::callable<query<Q, On, PartView>, On, Q> {
   using robot_type = detail::one_robot<On, PartView>;
-  using callable = detail::callable<query, Q>;
+  using callable = detail::callable<query, On, Q>;
   using engine = typename detail::engine_of<Q, On, PartView>::type;
   using out = typename detail::out_of<Q>::type;
 
@@ -259,7 +270,7 @@ class query : detail::one_robot<On, PartView>,
   /// stay until it is done. On a device, a graph that captures this keeps the current poses and options.
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const Q& q, const out& to) {
-    static_assert(explain_given<Clouds>());
+    static_assert(explain_given<Clouds>() && detail::explain_readable<On, Clouds>());
     const detail::in_use::call only(callable::used());
     return engine::start(detail::as_poses(poses), clouds, q, to);
   }
@@ -269,10 +280,11 @@ class query : detail::one_robot<On, PartView>,
   }
   /// The same with poses in device or pinned memory: one per part, and the cloud's (null: the world's). A graph that
   /// captures this sees the memory of each launch.
-  template <point_source S>
-  void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, const out& to) {
+  template <class S>
+    requires point_source<S> || point_container<S>
+  void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
     const detail::in_use::call only(callable::used());
-    engine::start_with(poses, source, cloud_pose, to);
+    for_each_cloud(cloud, [&](const auto& source, const auto&) { engine::start_with(poses, source, cloud_pose, to); });
   }
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
