@@ -99,7 +99,7 @@ struct chunk_engine_of {
   using type = chunk_engine<Q, On, PartView>;
 };
 template <class Q, class On, class PartView>
-  requires requires { typename Q::template chunks<On, PartView>; }
+  requires(!is_plain<On> && requires { typename Q::template chunks<On, PartView>; })
 struct chunk_engine_of<Q, On, PartView> {
   /// With the robot where it is asked.
   struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {
