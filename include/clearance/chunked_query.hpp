@@ -95,7 +95,7 @@ struct chunk_engine_of {
   using type = chunk_engine<Q, On, PartView>;
 };
 template <class Q, class On, class PartView>
-  requires chunking_question<Q>
+  requires(!is_plain<On> && chunking_question<Q>)
 struct chunk_engine_of<Q, On, PartView> {
   /// With the robot where it is asked.
   struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {

@@ -14,5 +14,7 @@ template <>
 inline constexpr bool has_scan<device> = true;
 template <>
 inline constexpr bool has_scan<devices> = true;
+template <class Traversal>
+inline constexpr bool has_scan<plain<device, Traversal>> = true;
 
 }  // namespace clearance::detail

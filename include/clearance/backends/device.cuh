@@ -89,7 +89,7 @@ struct device {
   void for_ranges(std::size_t n, F body) const {
     if (n == 0) return;
     const device_guard guard(id);
-    if constexpr (requires { body.device_stack(); }) need_stack(body.device_stack());
+    if constexpr (requires { body.device_stack(); }) check_call_stack(body.device_stack());
     constexpr unsigned threads = 128;
     int processors = 0;
     check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, id), "cudaDeviceGetAttribute");
@@ -100,6 +100,17 @@ struct device {
   template <class F>
   void for_each(std::size_t n, F body) const {
     for_ranges(n, detail::each_body<F>{body});
+  }
+
+  /// Throws std::invalid_argument if a thread may use less call stack than so many bytes.
+  void check_call_stack(std::size_t bytes) const {
+    const device_guard guard(id);
+    std::size_t limit = 0;
+    check_cuda(cudaDeviceGetLimit(&limit, cudaLimitStackSize), "cudaDeviceGetLimit");
+    if (limit < bytes)
+      throw std::invalid_argument("clearance: this recursion may need " + std::to_string(bytes) +
+                                  " bytes of call stack a thread, but the device's limit is " + std::to_string(limit) +
+                                  "; raise cudaLimitStackSize or use another traversal");
   }
 
   /// Is this what is thrown where the device's memory ends?
@@ -178,16 +189,6 @@ struct device {
     int integrated = 0;
     check_cuda(cudaDeviceGetAttribute(&integrated, cudaDevAttrIntegrated, id), "cudaDeviceGetAttribute");
     return integrated != 0 && attributes.devicePointer != nullptr;
-  }
-
- private:
-  void need_stack(std::size_t bytes) const {
-    std::size_t limit = 0;
-    check_cuda(cudaDeviceGetLimit(&limit, cudaLimitStackSize), "cudaDeviceGetLimit");
-    if (limit < bytes)
-      throw std::invalid_argument("clearance: this recursion may need " + std::to_string(bytes) +
-                                  " bytes of call stack a thread, but the device's limit is " + std::to_string(limit) +
-                                  "; raise cudaLimitStackSize or use another traversal");
   }
 };
 

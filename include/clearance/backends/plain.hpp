@@ -1,35 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Any backend with a traversal of your choice, for those who compare traversals.
+// Any backend with a traversal of your choice: the library's or your own.
 
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/backends/one_call.hpp>
 #include <clearance/concepts.hpp>
 
 namespace clearance {
 
-/// A backend with a traversal of your choice: the loop over points, as in the paper, for those who study traversals.
-/// Pass it in place of a backend.
-template <backend B, class Traversal>
-struct plain {
-  B on;
+/// A backend on which each point walks trees by a traversal of your choice, as in the paper. Pass it in place of the
+/// backend, with any question: the answer has the same bits. It has no scan of its own, so it is slower.
+template <class B, class Traversal>
+struct plain : B {
   Traversal walk = {};
 };
-template <backend B, class Traversal>
+template <class B, class Traversal>
 plain(B, Traversal) -> plain<B, Traversal>;
 
 namespace detail {
 
-/// The backend itself.
 template <class On>
-const On& backend_of(const On& on) {
-  return on;
-}
+inline constexpr bool is_plain = false;
 template <class B, class Traversal>
-const B& backend_of(const plain<B, Traversal>& on) {
-  return on.on;
-}
-template <class On>
-using backend_of_t = std::remove_cvref_t<decltype(backend_of(std::declval<const On&>()))>;
+inline constexpr bool is_plain<plain<B, Traversal>> = true;
+
+template <class B, class Traversal>
+struct one_call<plain<B, Traversal>> : one_call<B> {};
 
 }  // namespace detail
+
+namespace backends {
+
+template <class B, class Traversal>
+class memory_of<plain<B, Traversal>> : public memory_of<B> {
+ public:
+  using memory_of<B>::memory_of;
+};
+
+}  // namespace backends
 
 }  // namespace clearance

@@ -73,6 +73,17 @@ template <class T, class H, class Q>
 concept traversal = std::is_trivially_copyable_v<T> && hierarchy<H> && visitor<Q> &&
                     requires(const T walk, const H h, vec3 p, Q q) { walk(h, p, q); };
 
+/// `traversal<T, H, Q>` with reasons.
+template <class T, hierarchy H, visitor Q>
+consteval bool explain_traversal() {
+  static_assert(std::is_trivially_copyable_v<T>, "a traversal must be trivially copyable");
+  static_assert(
+      requires(const T walk, const H h, vec3 p, Q q) { walk(h, p, q); },
+      "a traversal of the robot's trees needs: template <hierarchy H, visitor Q> CLEARANCE_HD void operator()(const H& "
+      "tree, vec3 p, Q& q) const");
+  return traversal<T, H, Q>;
+}
+
 /// A traversal with a stack of `capacity` entries. Trees that need more are refused before it starts.
 template <class T>
 concept bounded_traversal = requires {

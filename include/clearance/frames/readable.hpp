@@ -3,6 +3,7 @@
 // Clouds as a backend can read them. readable.cuh has a device's.
 
 #include <clearance/backends/host.hpp>
+#include <clearance/backends/plain.hpp>
 #include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/points/sharded.hpp>
 
@@ -90,6 +91,12 @@ class readable_clouds {
 
   On on_;
   cloud_copies<On> copies_;
+};
+
+template <class B, class Traversal>
+class readable_clouds<plain<B, Traversal>> : public readable_clouds<B> {
+ public:
+  using readable_clouds<B>::readable_clouds;
 };
 
 }  // namespace clearance::frames

@@ -2,10 +2,8 @@
 #pragma once
 // Asks for the least distance on one backend, frame after frame.
 
-#include <clearance/backends/plain.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/minimum/host_search.hpp>
-#include <clearance/traversal/near_first.hpp>
 
 namespace clearance::minimum {
 
@@ -18,31 +16,28 @@ auto minima_of(const typename Q::out& to) {
     return std::pair(to, static_cast<part_minimum*>(nullptr));
 }
 
-/// For a backend without a search of its own, or `plain`: a loop over points, which keeps nothing from frame to frame.
+/// For a backend without a search of its own: a loop over points, which keeps nothing from frame to frame.
 template <class On, class PartView, class Q>
 class engine {
-  using there = detail::backend_of_t<On>;
-
  public:
-  engine(const On& on, const model_view<PartView>& model) : on_(on), model_(model) {}
+  template <class... Memory>
+  engine(const On& on, const model_view<PartView>& model, Memory... from)
+      : on_(on), parts_(model.size()), readable_(on, from...), search_(on, model) {}
 
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
-    const there& backend = detail::backend_of(on_);
-    auto result = backend.template make_scratch<min_distance_result>(1);
-    auto minima = backend.template make_scratch<part_minimum>(Q::per_part ? model_.size() : 0);
-    frames::cloud_copies<there> copies;
-    search(poses, clouds, result.data(), Q::per_part ? minima.data() : nullptr,
-           frames::readable_on<there>{backend, copies});
+    auto result = on_.template make_scratch<min_distance_result>(1);
+    auto minima = on_.template make_scratch<part_minimum>(Q::per_part ? parts_ : 0);
+    search_(poses, readable_(clouds), result.data(), Q::per_part ? minima.data() : nullptr);
     if constexpr (Q::per_part)
-      return {backend.copy_out(result.data(), 1)[0], backend.copy_out(minima.data(), minima.size())};
+      return {on_.copy_out(result.data(), 1)[0], on_.copy_out(minima.data(), minima.size())};
     else
-      return backend.copy_out(result.data(), 1)[0];
+      return on_.copy_out(result.data(), 1)[0];
   }
   template <class Clouds>
   void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
     const auto [result, minima] = minima_of<Q>(to);
-    search(poses, clouds, result, minima, frames::as_it_is{});
+    search_(poses, clouds, result, minima);
   }
   /// The host waits, so that this is all.
   template <class Clouds>
@@ -54,21 +49,10 @@ class engine {
   void forget() const {}
 
  private:
-  template <class Clouds, class Here>
-  void search(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
-              part_minimum* minima, const Here& here) const {
-    if constexpr (requires { on_.walk; }) {
-      using walk_type = std::remove_const_t<decltype(on_.walk)>;
-      static_assert(traversal<walk_type, typename PartView::hierarchy_type, shared_nearest>,
-                    "this is no traversal of the parts' trees");
-      plain_search<there, PartView, walk_type>(on_.on, model_, on_.walk)(poses, clouds, result, minima, here);
-    } else {
-      plain_search<On, PartView, near_first>(on_, model_, {})(poses, clouds, result, minima, here);
-    }
-  }
-
   On on_;
-  model_view<PartView> model_;
+  std::size_t parts_;
+  frames::readable_clouds<On> readable_;
+  plain_search<On, PartView> search_;
   typename Q::result result_;
 };
 

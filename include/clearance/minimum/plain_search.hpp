@@ -2,7 +2,7 @@
 #pragma once
 // The least distance by the paper's loop over points, on any backend and with any traversal.
 
-#include <clearance/frames/clouds.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/minimum/resolve.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/descend.hpp>
@@ -46,21 +46,18 @@ struct seed_body {
 };
 
 /// The least distance by a loop over points with any traversal, on any backend. It keeps nothing from frame to frame.
-template <backend B, class PartView, class Traversal>
+template <backend B, class PartView>
 class plain_search {
  public:
-  plain_search(const B& on, const model_view<PartView>& model, const Traversal& walk)
-      : on_(on), model_(model), walk_(walk) {
-    check_stack<Traversal>(model.depth, model.width);
-    if constexpr (recursing_traversal<Traversal>) stack_bytes_ = Traversal::device_stack(model.depth);
-  }
+  plain_search(const B& on, const model_view<PartView>& model) : on_(on), model_(model) {}
 
   /// Enqueues one frame and does not wait. `result` and `minima` (one per part, or null) lie in memory that the backend
-  /// can write, and are valid once its work is done. Clouds must live until then. `here(source, cloud)` returns a
-  /// source that the backend can read.
-  template <class Clouds, class Here>
+  /// can write, and are valid once its work is done. Clouds must live until then, and be readable there.
+  template <class Clouds>
   void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
-                  part_minimum* minima, const Here& here) const {
+                  part_minimum* minima) const {
+    const auto walk = scan::walk_of(on_, model_);
+    using walk_type = std::remove_const_t<decltype(walk)>;
     const auto parts = std::uint32_t(model_.size());
     auto all = on_.template make_scratch<totals>(1);
     auto counts = on_.template make_scratch<scan::drop_counts>(1);
@@ -76,20 +73,19 @@ class plain_search {
     const shared_bounds bounds{all.data(), each ? part_best.data() : nullptr, extra.empty() ? nullptr : extras.data()};
     frames::cloud_frame frame;
     const std::uint64_t seen = frames::for_each_turn(
-        frame, model_.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
-          const S source = here(anywhere, now.cloud);
+        frame, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           auto places = on_.template make_scratch<frames::placement>(parts);
           on_.stage(std::span<const frames::placement>(frame.places), places.data());
-          using loop = scan::scan_body<PartView, S, Traversal, shared_bounds>;
+          using loop = scan::scan_body<PartView, S, walk_type, shared_bounds>;
           const loop body{model_.parts, places.data(), parts,  source, frame.origin,
-                          now.first,    counts.data(), bounds, walk_,  stack_bytes_};
+                          now.first,    counts.data(), bounds, walk};
           using seeds = seed_body<loop>;
           if (const std::size_t n = source.size(); n > 4 * seeds::samples)
             on_.for_each(seeds::samples, seeds{body, n / seeds::samples});
           on_.for_ranges(source.size(), body);
-          on_.for_each(parts + 1, resolve_body<PartView, S, Traversal>{
-                                      model_.parts, places.data(), parts, source, frame.origin, frame.world_from_cloud,
-                                      now.first, now.cloud, bounds, walk_, result, minima, stack_bytes_});
+          on_.for_each(parts + 1, resolve_body<PartView, S, walk_type>{model_.parts, places.data(), parts, source,
+                                                                       frame.origin, frame.world_from_cloud, now.first,
+                                                                       now.cloud, bounds, walk, result, minima});
         });
     on_.for_each(
         1, conclude_body<PartView>{model_.parts, parts, counts.data(), bounds, frame.error, frame.slop, seen, result});
@@ -103,8 +99,6 @@ class plain_search {
 
   B on_;
   model_view<PartView> model_;
-  Traversal walk_;
-  std::size_t stack_bytes_ = 0;
 };
 
 }  // namespace clearance::minimum

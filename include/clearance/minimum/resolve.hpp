@@ -87,13 +87,6 @@ struct resolve_body {
   Traversal walk;
   min_distance_result* result;
   part_minimum* minima;
-  std::size_t stack_bytes = 0;
-
-  std::size_t device_stack() const
-    requires recursing_traversal<Traversal>
-  {
-    return stack_bytes;
-  }
 
   /// Can the key belong to part `k`? If not, the part need not be searched.
   CLEARANCE_HD bool may_be_of(std::uint32_t k) const {

@@ -28,6 +28,9 @@ struct pairs_on {
   /// For one robot, frame after frame.
   template <class PartView>
   struct kept {
+    template <class... Memory>
+    kept(const On& on, const model_view<PartView>& model, Memory...) : on(on), model(model) {}
+
     On on;
     model_view<PartView> model;
 

@@ -2,7 +2,6 @@
 #pragma once
 // Asks about many configurations on one backend, frame after frame.
 
-#include <clearance/backends/plain.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/plan/configurations.hpp>
 #include <clearance/plan/host_batch.hpp>
@@ -14,8 +13,9 @@ namespace clearance::plan {
 template <class On, class PartView, class Q>
 class engine {
  public:
-  engine(const On& on, const model_view<PartView>& model)
-      : on_(on), model_(model), widened_(detail::backend_of(on), model) {}
+  template <class... Memory>
+  engine(const On& on, const model_view<PartView>& model, Memory... from)
+      : on_(on), model_(model), widened_(on, model, from...) {}
 
   template <class Clouds>
   typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
@@ -30,12 +30,19 @@ class engine {
     });
     return all;
   }
+  /// Throws std::invalid_argument as joint_chain::count, too.
+  template <class Clouds>
+  typename Q::result run_chain(const joint_chain<host>& chain, std::span<const double> joints, const Clouds& clouds,
+                               const Q& q) {
+    detail::check_chain(model_.size(), chain.parts());
+    return run(chain.poses(joints), clouds, q);
+  }
   void forget() const {}
 
  private:
   On on_;
   model_view<PartView> model_;
-  widened_model<detail::backend_of_t<On>, PartView> widened_;
+  widened_model<On, PartView> widened_;
 };
 
 /// On the CPU. The result stays valid until the next call.

@@ -15,6 +15,9 @@ struct points_on;
 /// The prepared question of a backend that has nothing to prepare.
 template <class On, class PartView>
 struct unprepared {
+  template <class... Memory>
+  unprepared(const On& on, const model_view<PartView>& model, Memory...) : on(on), model(model) {}
+
   On on;
   model_view<PartView> model;
 

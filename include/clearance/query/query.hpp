@@ -7,6 +7,7 @@
 #include <clearance/frames/clouds.hpp>
 #include <clearance/query/engine.hpp>
 #include <clearance/robot/model.hpp>
+#include <clearance/visitor/nearest.hpp>
 
 #include <atomic>
 #include <memory>
@@ -59,7 +60,7 @@ class in_use {
 /// A robot where one backend runs. A part alone becomes a robot of one part, in memory that this keeps.
 template <class On, class PartView>
 class one_robot {
-  using buffer = typename backend_of_t<On>::template buffer<PartView>;
+  using buffer = typename On::template buffer<PartView>;
 
  public:
   template <robot Robot>
@@ -71,7 +72,7 @@ class one_robot {
   one_robot(const On& on, const Part& part) : view_{nullptr, {&part.facts, 1}, 0, 0} {
     const PartView its = part.view();
     check(part.facts, 0);
-    own_ = std::make_shared<const buffer>(backend_of(on).copy_in(std::span(&its, 1)));
+    own_ = std::make_shared<const buffer>(on.copy_in(std::span(&its, 1)));
     view_ = {own_->data(), view_.facts, its.tree.depth(), its.tree.width()};
   }
 
@@ -83,7 +84,7 @@ class one_robot {
     if (view.size() != 0 && view.parts == nullptr)
       throw std::invalid_argument("clearance: a view of " + std::to_string(view.size()) +
                                   " parts has none: they are null");
-    if constexpr (std::is_same_v<backend_of_t<On>, host>)
+    if constexpr (std::is_base_of_v<host, On>)
       for (std::size_t k = 0; k < view.size(); ++k) {
         const PartView& its = view.parts[k];
         if (its.tree.depth() > view.depth || its.tree.width() > view.width)
@@ -188,8 +189,10 @@ class callable {
   /// On a device: about the configurations that were placed.
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds, const Q& q) & {
+    constexpr bool places = requires(Query& its) { its.run_placed(clouds, q); };
+    static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
     const in_use::call only(used_);
-    return self().run_placed(clouds, q);
+    if constexpr (places) return self().run_placed(clouds, q);
   }
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds) & {
@@ -231,13 +234,28 @@ struct out_of<Q> {
 template <class On>
 inline constexpr bool has_scan = !requires { typename On::own_scan; };
 
+/// Where it is asked, with reasons.
+template <class On>
+consteval bool explain_backend() {
+  constexpr bool several = requires { typename On::several; }, known = backend<On> || several;
+  static_assert(known, "the first argument is a backend: host{}, device{}, devices{...}, or plain{backend, traversal}");
+  constexpr bool one_walks = !is_plain<On> || !several;
+  static_assert(one_walks,
+                "plain takes one backend, host{} or device{}: several devices walk by their own kernels, and ranks are "
+                "asked by shard{comm, plain{backend, traversal}}");
+  static_assert(!known || !one_walks || has_scan<On>, "a device is asked with nvcc: include <clearance/device.cuh>");
+  return known && one_walks && has_scan<On>;
+}
+
 /// What is asked, and of whom, with reasons; before anything else is looked at.
 template <class On, class Robot, class Q>
 consteval bool explain_asked() {
-  constexpr bool known = backend<On> || requires { typename On::several; } || requires(const On on) { on.on, on.walk; };
-  static_assert(known, "the first argument is a backend: host{}, device{}, devices{...}, or plain{backend, traversal}");
-  static_assert(!known || has_scan<On>, "a device is asked with nvcc: include <clearance/device.cuh>");
-  return known && has_scan<On> && explain_robot<Robot>() && explain_question<Q>();
+  if constexpr (explain_backend<On>() && explain_robot<Robot>() && explain_question<Q>()) {
+    if constexpr (is_plain<On>)
+      return explain_traversal<decltype(On::walk), typename part_view_of<Robot>::type::hierarchy_type, nearest>();
+    return true;
+  }
+  return false;
 }
 
 }  // namespace detail
@@ -261,6 +279,7 @@ class query : detail::one_robot<On, PartView>,
   query(const On& on, const Robot& robot, const Q& asked, Memory... memory)
       : robot_type(on, robot), engine(on, robot_type::view(), memory...), callable(asked) {
     static_assert(detail::explain_asked<On, Robot, Q>() && explain_engine<engine, Q>());
+    if constexpr (detail::is_plain<On>) scan::walk_of(on, robot_type::view());  // refuses trees too deep for it
     detail::check_options(asked, robot_type::view().size());
   }
   template <owning_robot Robot, class... Memory>
@@ -284,13 +303,20 @@ class query : detail::one_robot<On, PartView>,
     requires point_source<S> || point_container<S>
   void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
     const detail::in_use::call only(callable::used());
-    for_each_cloud(cloud, [&](const auto& source, const auto&) { engine::start_with(poses, source, cloud_pose, to); });
+    for_each_cloud(cloud, [&](const auto& source, const auto&) {
+      constexpr bool reads = requires(engine& its) { its.start_with(poses, source, cloud_pose, to); };
+      static_assert(reads,
+                    "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
+      if constexpr (reads) engine::start_with(poses, source, cloud_pose, to);
+    });
   }
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
   auto enqueue(const Clouds& clouds, const Q& q) {
+    constexpr bool places = requires(engine& its) { its.start_placed(clouds, q); };
+    static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
     const detail::in_use::call only(callable::used());
-    return engine::start_placed(clouds, q);
+    if constexpr (places) return engine::start_placed(clouds, q);
   }
   template <class Clouds>
   auto enqueue(const Clouds& clouds) {

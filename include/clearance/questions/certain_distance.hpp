@@ -7,7 +7,7 @@
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/scan/interior.hpp>
-#include <clearance/traversal/any_depth.hpp>
+#include <clearance/scan/walk_of.hpp>
 
 #include <tuple>
 
@@ -135,7 +135,7 @@ struct uncertain_pair {
 };
 
 /// Reads a part's pair again, as it was measured. The last thread reads the shares of the nominal answer's point.
-template <class PartView, point_source Source>
+template <class PartView, point_source Source, class Traversal>
 struct read_pair {
   const PartView* parts;
   const frames::placement* places;
@@ -145,7 +145,7 @@ struct read_pair {
   world_transform world_from_cloud;
   std::uint32_t cloud;
   const part_minimum* minima;
-  any_depth walk;
+  Traversal walk;
   uncertain_pair* pairs;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -204,6 +204,7 @@ struct certain_distance {
 template <class On, class PartView>
 class certain_distance::engine {
  public:
+  /// Throws std::invalid_argument as part_witnesses.
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : on_(on),
@@ -212,6 +213,7 @@ class certain_distance::engine {
         search_(on, model, from...),
         memory_(on, from...),
         readable_(on, from...) {
+    scan::walk_of(on, model);
     nominal_.reserve(), search_.reserve();
   }
 
@@ -243,6 +245,7 @@ class certain_distance::engine {
     auto* const pairs = memory_.template space<minimum::uncertain_pair>(parts + 1).data();
     const auto* const wanted = std::get<0>(memory_.put(minima));
     errors_.assign(parts, 0);
+    const auto walk = scan::walk_of(on_, model_);
     bool vague = false;
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
@@ -251,9 +254,9 @@ class certain_distance::engine {
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto* const places = std::get<0>(memory_.put(frame_.places));
           backends::for_each_apart(on_, parts + (nominal.part != none),
-                                   minimum::read_pair<PartView, S>{
+                                   minimum::read_pair<PartView, S, std::remove_const_t<decltype(walk)>>{
                                        model_.parts, places, parts, source, frame_.origin, frame_.world_from_cloud,
-                                       now.cloud, wanted, any_depth{stack_need(model_.depth, model_.width)}, pairs});
+                                       now.cloud, wanted, walk, pairs});
         });
     pairs_ = on_.copy_out(pairs, parts + 1);
     return vague;

@@ -128,13 +128,12 @@ std::vector<min_distance_result> min_distance_per_robot(const On& on, const Robo
     return results;
   } else {
     return detail::one_call<On>::of(on, [&](auto... memory) {
-      const auto& there = detail::backend_of(on);
-      frames::readable_clouds<detail::backend_of_t<On>> copies(there, memory...);
+      frames::readable_clouds<On> copies(on, memory...);
       const auto& here = copies(clouds);
-      auto results = there.template make_scratch<min_distance_result>(count);
+      auto results = on.template make_scratch<min_distance_result>(count);
       auto* result = results.data();
       for (const auto& robot : robots) query(on, robot, min_distance{}, memory...).enqueue(*next++, here, result++);
-      return there.copy_out(results.data(), count);
+      return on.copy_out(results.data(), count);
     });
   }
 }

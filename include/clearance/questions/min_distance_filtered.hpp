@@ -27,18 +27,16 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, const 
     return all;
   } else {
     return detail::one_call<On>::of(on, [&](auto... memory) {
-      const auto& there = detail::backend_of(on);
-      using backend = detail::backend_of_t<On>;
-      frames::readable_clouds<backend> copies(there, memory...);
+      frames::readable_clouds<On> copies(on, memory...);
       const auto& here = copies(clouds);
-      auto labels = there.template make_scratch<point_label>(count_points(clouds));
-      auto counts = there.template make_scratch<self_filter_counts>(1);
-      auto result = there.template make_scratch<min_distance_result>(1);
+      auto labels = on.template make_scratch<point_label>(count_points(clouds));
+      auto counts = on.template make_scratch<self_filter_counts>(1);
+      auto result = on.template make_scratch<min_distance_result>(1);
       const self_filter::out to{labels.data(), counts.data()};
-      query filtered(there, own, filter, memory...);
+      query filtered(on, own, filter, memory...);
       filtered.enqueue(own_poses, here, to);
       query(on, robot, min_distance{}, memory...).enqueue(poses, masked_clouds(here, labels.data()), result.data());
-      return filtered_distance{filtered.read(filter, to), there.copy_out(result.data(), 1)[0]};
+      return filtered_distance{filtered.read(filter, to), on.copy_out(result.data(), 1)[0]};
     });
   }
 }

@@ -10,7 +10,7 @@
 #include <clearance/point_source.hpp>
 #include <clearance/questions/nearest_points.hpp>
 #include <clearance/scan/interior.hpp>
-#include <clearance/traversal/any_depth.hpp>
+#include <clearance/scan/walk_of.hpp>
 
 #include <cmath>
 #include <set>
@@ -128,7 +128,7 @@ struct count_support_of_pieces {
 };
 
 /// Which candidates are certainly inside a part's solid.
-template <class PartView, point_source Source>
+template <class PartView, point_source Source, class Traversal>
 struct find_inside {
   const PartView* parts;
   const frames::placement* places;
@@ -138,7 +138,7 @@ struct find_inside {
   std::uint32_t first;
   const std::uint32_t* number;
   std::uint32_t* inside;  ///< One per candidate; becomes 1 if it is certainly inside.
-  any_depth walk;
+  Traversal walk;
 
   CLEARANCE_HD void operator()(std::size_t c) const {
     if (number[c] < first || number[c] - first >= source.size()) return;
@@ -276,13 +276,14 @@ bool any_inside(Passes& passes, std::span<const Eigen::Isometry3d> poses, const 
     const auto a = passes.prepare(poses, clouds);
     const auto both = passes.memory.put(numbers_of(a.first, points), std::vector<std::uint32_t>(points.size()));
     std::uint32_t *const number = std::get<0>(both), *const inside = std::get<1>(both);
+    const auto walk = scan::walk_of(passes.on, model);
     frames::cloud_frame frame;
     frames::for_each_turn(
         frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto [places] = passes.memory.put(frame.places);
-          passes.on.for_each(points.size(), find_inside<part_view, S>{model.parts, places, std::uint32_t(model.size()),
-                                                                      source, frame.origin, now.first, number, inside,
-                                                                      any_depth{stack_need(model.depth, model.width)}});
+          passes.on.for_each(points.size(), find_inside<part_view, S, std::remove_const_t<decltype(walk)>>{
+                                                model.parts, places, std::uint32_t(model.size()), source, frame.origin,
+                                                now.first, number, inside, walk});
         });
     const std::vector<std::uint32_t> found = passes.on.copy_out(inside, points.size());
     return std::ranges::find(found, 1u) != found.end();
@@ -385,8 +386,11 @@ supported_distance least_supported(Passes& passes, known_nearest& known, std::sp
 template <class On, class PartView>
 class min_distance_supported::engine {
  public:
+  /// Throws std::invalid_argument if the tree of a solid is too deep for `near_first` on a device.
   template <class... Memory>
-  engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
+  engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {
+    if constexpr (scan::has_interior<PartView>) scan::walk_of(on, model);
+  }
 
   template <class Clouds>
   supported_distance run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,

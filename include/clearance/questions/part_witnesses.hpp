@@ -7,7 +7,7 @@
 #include <clearance/ground/borrowed.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/query/query.hpp>
-#include <clearance/traversal/any_depth.hpp>
+#include <clearance/scan/walk_of.hpp>
 
 namespace clearance {
 
@@ -17,7 +17,7 @@ namespace minimum {
 inline constexpr std::uint32_t few = 12;
 
 /// One thread per part, for one cloud.
-template <class PartView, point_source Source>
+template <class PartView, point_source Source, class Traversal>
 struct witness_body {
   const PartView* parts;
   backends::few_values<frames::placement, few> places;
@@ -26,7 +26,7 @@ struct witness_body {
   world_transform world_from_cloud;
   std::uint32_t cloud;
   const part_minimum* minima;
-  any_depth walk;
+  Traversal walk;
   part_witness* witnesses;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -68,11 +68,11 @@ struct part_witnesses {
 template <class On, class PartView>
 class part_witnesses::engine {
  public:
-  /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device.
+  /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device, or for the traversal of `plain`.
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : on_(on), model_(model), memory_(on, from...), readable_(on, from...) {
-    if constexpr (requires { typename On::own_scan; }) check_stack<near_first>(model_.depth, model_.width);
+    scan::walk_of(on, model);
   }
 
   template <class Clouds>
@@ -100,14 +100,14 @@ class part_witnesses::engine {
   template <class Clouds>
   void evaluate_all(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
                     part_witness* witnesses) {
-    const any_depth walk{stack_need(model_.depth, model_.width)};
+    const auto walk = scan::walk_of(on_, model_);
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
-          backends::for_each_apart(
-              on_, model_.size(),
-              minimum::witness_body<PartView, S>{model_.parts, places, source, frame_.origin, frame_.world_from_cloud,
-                                                 now.cloud, minima, walk, witnesses});
+          backends::for_each_apart(on_, model_.size(),
+                                   minimum::witness_body<PartView, S, std::remove_const_t<decltype(walk)>>{
+                                       model_.parts, places, source, frame_.origin, frame_.world_from_cloud, now.cloud,
+                                       minima, walk, witnesses});
         });
   }
 

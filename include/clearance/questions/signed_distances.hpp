@@ -11,7 +11,7 @@ namespace clearance {
 namespace pointwise {
 
 /// After `distances`: how deep a point is that is 0 away.
-template <class PartView, point_source Source>
+template <class PartView, point_source Source, class Traversal>
 struct deepen_body {
   const PartView* parts;
   const frames::placement* places;
@@ -20,7 +20,7 @@ struct deepen_body {
   vec3 origin;
   std::uint32_t first;  ///< Number of this cloud's first point among all clouds' points.
   distances_out out;
-  any_depth walk;
+  Traversal walk;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
     if (out.distance[first + i] != 0) return;
@@ -63,25 +63,26 @@ struct signed_distances {
     return frames::largest_within(d_max);
   }
   template <class On, class PartView>
-  static void check_robot(const On&, const model_view<PartView>& model) {
+  static void check_robot(const On& on, const model_view<PartView>& model) {
     static_assert(
         about<PartView>,
         "signed exact distances are to closed meshes: make the parts of closed_mesh; inner spheres are signed "
         "in `distances`");
-    if constexpr (requires { typename On::own_scan; }) check_stack<near_first>(model.depth, model.width);
+    scan::walk_of(on, model);
   }
   template <class On, class PartView, class Clouds>
   static void after(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                     const Clouds& clouds, const distances_out& out) {
+    const auto walk = scan::walk_of(on, model);
     frames::cloud_frame frame;
     frames::for_each_turn(
         frame, model.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           static_assert(points_alone<S>());
           auto places = on.template make_scratch<frames::placement>(model.size());
           on.stage(std::span<const frames::placement>(frame.places), places.data());
-          on.for_each(source.size(), pointwise::deepen_body<PartView, S>{
+          on.for_each(source.size(), pointwise::deepen_body<PartView, S, std::remove_const_t<decltype(walk)>>{
                                          model.parts, places.data(), std::uint32_t(model.size()), source, frame.origin,
-                                         now.first, out, any_depth{stack_need(model.depth, model.width)}});
+                                         now.first, out, walk});
         });
   }
 };

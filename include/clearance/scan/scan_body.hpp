@@ -10,7 +10,7 @@
 #include <clearance/scan/element.hpp>
 #include <clearance/scan/interior.hpp>
 #include <clearance/scan/tile_scan.hpp>
-#include <clearance/traversal/any_depth.hpp>
+#include <clearance/scan/walk_of.hpp>
 
 namespace clearance::scan {
 
@@ -27,7 +27,6 @@ struct scan_body {
   drop_counts* counts;
   Tally answer;
   Traversal walk;
-  std::size_t stack_bytes = 0;
 
   CLEARANCE_HD void operator()(indices range) const {
     static_assert(explain_tally<Tally>());
@@ -75,12 +74,6 @@ struct scan_body {
     walk_for(walk, part.tree, q, ask);
     answer.take(index, k, ask);
   }
-
-  std::size_t device_stack() const
-    requires recursing_traversal<Traversal>
-  {
-    return stack_bytes;
-  }
 };
 
 /// Enqueues a loop over the points of all clouds of a frame, on any backend without its own scan. `answer(source,
@@ -91,7 +84,7 @@ frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
                                std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                                point_counts* counts, const Here& here) {
   const auto parts = std::uint32_t(model.size());
-  const any_depth walk{stack_need(model.depth, model.width)};
+  const auto walk = walk_of(on, model);
   auto dropped = on.template make_scratch<drop_counts>(1);
   const drop_counts start;
   on.stage(std::span(&start, 1), dropped.data());
@@ -102,9 +95,10 @@ frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
         auto places = on.template make_scratch<frames::placement>(parts);
         on.stage(std::span<const frames::placement>(frame.places), places.data());
         const auto its = answer(source, now);
-        on.for_ranges(source.size(), scan_body<PartView, S, any_depth, std::remove_const_t<decltype(its)>>{
-                                         model.parts, places.data(), parts, source, frame.origin, now.first,
-                                         dropped.data(), its, walk});
+        on.for_ranges(
+            source.size(),
+            scan_body<PartView, S, std::remove_const_t<decltype(walk)>, std::remove_const_t<decltype(its)>>{
+                model.parts, places.data(), parts, source, frame.origin, now.first, dropped.data(), its, walk});
       });
   on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { count(*counts, from->dropped, seen); });
   return frame;
