@@ -59,6 +59,8 @@ template <class T>
 inline constexpr bool some_on_device = only_on_device<T>();
 template <point_container C>
 inline constexpr bool some_on_device<C> = only_on_device<points_in<C>>();
+template <point_source S>
+inline constexpr bool some_on_device<placed<S>> = only_on_device<S>();
 template <class... T>
 inline constexpr bool some_on_device<std::tuple<T...>> = (some_on_device<T> || ...);
 template <class... T>
@@ -131,7 +133,7 @@ consteval bool explain_clouds() {
     explain_point_source<T>();
   else if constexpr (requires(const T t) { t.source, t.pose; })
     explain_point_source<std::remove_cvref_t<decltype(std::declval<const T&>().source)>>();
-  else if constexpr (std::is_convertible_v<const T&, point_span>)
+  else if constexpr (point_container<T>)
     return true;
   else if constexpr (requires(const T t) { *std::begin(t); })
     explain_clouds<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>>();

@@ -26,9 +26,22 @@ concept xyz_record = std::is_standard_layout_v<T> && std::is_trivially_copyable_
 /// A source in a device's memory, which a host must not read. Its type says so, for the question that is asked.
 template <point_source S>
 struct in_device_memory : S {
+  using can = can_all<typename S::can, clearance::can<sources::slicing>>;
   static constexpr bool only_on_device = true;
 
   CLEARANCE_HD in_device_memory(const S& source) : S(source) {}
+
+  in_device_memory at(const std::byte* copy) const
+    requires copied_source<S>
+  {
+    return S::at(copy);
+  }
+  template <class F>
+  in_device_memory with_pieces(const F& f) const
+    requires source_in_pieces<S>
+  {
+    return S::with_pieces(f);
+  }
 
   CLEARANCE_HD auto slice(std::size_t begin, std::size_t end) const {
     const auto piece = clearance::slice(static_cast<const S&>(*this), begin, end);
@@ -37,21 +50,6 @@ struct in_device_memory : S {
 };
 
 namespace detail {
-
-/// Does it, or a source that it views, say that it is in a device's memory?
-template <class S>
-consteval bool only_on_device() {
-  if constexpr (requires { S::only_on_device; })
-    return true;
-  else if constexpr (requires(const S s) { requires point_source<std::remove_cvref_t<decltype(s.source)>>; })
-    return only_on_device<std::remove_cvref_t<decltype(std::declval<const S&>().source)>>();
-  else if constexpr (requires(const S s) { requires point_source<std::remove_cvref_t<decltype(s.whole)>>; })
-    return only_on_device<std::remove_cvref_t<decltype(std::declval<const S&>().whole)>>();
-  else if constexpr (requires(const S s) { requires point_source<std::remove_cvref_t<decltype(s.piece(0))>>; })
-    return only_on_device<std::remove_cvref_t<decltype(std::declval<const S&>().piece(0))>>();
-  else
-    return false;
-}
 
 /// The source itself, without what its type says.
 template <point_source S>

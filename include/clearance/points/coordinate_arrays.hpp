@@ -9,6 +9,9 @@ namespace clearance {
 
 /// `count` points whose x, y and z lie in arrays of their own, anywhere. Metres.
 struct coordinate_arrays {
+  using can = clearance::can<sources::fetched, sources::unfiltered, sources::filtered, sources::slicing,
+                             sources::copied_in_pieces, sources::checked>;
+
   const real *x = nullptr, *y = nullptr, *z = nullptr;
   std::size_t count = 0;
   point_filter filter = {};

@@ -35,7 +35,7 @@ concept addressed_cloud =
 /// array of points.
 template <point_source S>
 struct in_memory {
-  static constexpr bool in_place = true;
+  static constexpr bool in_place = true, only_on_device = detail::only_on_device<S>();
 
   S source;
 

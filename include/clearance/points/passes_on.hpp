@@ -20,6 +20,15 @@ struct joined<can<A...>> {
 template <class... A, class... B, class... More>
 struct joined<can<A...>, can<B...>, More...> : joined<can<A..., B...>, More...> {};
 
+/// Is a source in a device's memory, which a host must not read? Its type says so, or that of the source under it.
+template <class S>
+consteval bool only_on_device() {
+  if constexpr (requires { S::only_on_device; })
+    return S::only_on_device;
+  else
+    return false;
+}
+
 /// What is read ahead of a source, if it can be.
 struct nothing_fetched {};
 template <class S>
@@ -53,6 +62,7 @@ struct passes_on {
   using passed = can_all<can<sources::rounded, sources::ranged, sources::seen>, can_as<S, Passed...>>;
   template <class Ability>
   static constexpr bool passes = passed::template has<Ability>;
+  static constexpr bool only_on_device = detail::only_on_device<S>();
   using cursor = typename detail::fetched_types<S>::cursor;
   using four = typename detail::fetched_types<S>::four;
 

@@ -23,7 +23,7 @@ class sharded {
       clearance::can<sources::rounded, sources::ranged, sources::seen, sources::in_pieces, sources::copied_in_pieces>,
       can_if<ball_source<S>, sources::capsules>, can_as<S, sources::shared>>;
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
-  static constexpr bool vague = ball_source<S>, balls = vague;
+  static constexpr bool vague = ball_source<S>, balls = vague, only_on_device = detail::only_on_device<S>();
 
   /// Throws std::invalid_argument if there are no pieces or too many.
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}

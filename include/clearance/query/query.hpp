@@ -134,7 +134,7 @@ std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
 /// Can `On` read these clouds? With a reason if not.
 template <class On, class Clouds>
 consteval bool explain_readable() {
-  constexpr bool fits = !std::is_same_v<backend_of_t<On>, host> || !some_on_device<Clouds>;
+  constexpr bool fits = !std::derived_from<On, host> || !some_on_device<Clouds>;
   static_assert(fits,
                 "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
                 "them into a thrust::host_vector");
@@ -230,6 +230,13 @@ struct out_of<Q> {
   using type = typename Q::out;
 };
 
+/// An engine that reads poses from memory when it runs: `start_with(poses, source, cloud pose, out)`.
+template <class E, class Q>
+concept posed_engine =
+    requires(E its, const world_transform* poses, const point_span& source, const typename out_of<Q>::type& to) {
+      its.start_with(poses, source, poses, to);
+    };
+
 /// Is there a scan for this backend? <clearance/device.cuh> says so for devices.
 template <class On>
 inline constexpr bool has_scan = !requires { typename On::own_scan; };
@@ -304,7 +311,7 @@ class query : detail::one_robot<On, PartView>,
   void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
     const detail::in_use::call only(callable::used());
     for_each_cloud(cloud, [&](const auto& source, const auto&) {
-      constexpr bool reads = requires(engine& its) { its.start_with(poses, source, cloud_pose, to); };
+      constexpr bool reads = detail::posed_engine<engine, Q>;
       static_assert(reads,
                     "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
       if constexpr (reads) engine::start_with(poses, source, cloud_pose, to);
