@@ -3,10 +3,25 @@
 // Clouds as a backend can read them. readable.cuh has a device's.
 
 #include <clearance/backends/host.hpp>
+#include <clearance/backends/plain.hpp>
 #include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/points/sharded.hpp>
 
 #include <map>
+
+namespace clearance::detail {
+
+/// Can `On` read these clouds? With a reason if not.
+template <class On, class Clouds>
+consteval bool explain_readable() {
+  constexpr bool fits = !std::is_same_v<backend_of_t<On>, host> || !some_on_device<Clouds>;
+  static_assert(fits,
+                "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
+                "them into a thrust::host_vector");
+  return fits;
+}
+
+}  // namespace clearance::detail
 
 namespace clearance::frames {
 

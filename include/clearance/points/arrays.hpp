@@ -34,6 +34,17 @@ struct in_device_memory : S {
     const auto piece = clearance::slice(static_cast<const S&>(*this), begin, end);
     return in_device_memory<std::remove_const_t<decltype(piece)>>(piece);
   }
+  in_device_memory at(const std::byte* copy) const
+    requires requires(const S s) { s.at(copy); }
+  {
+    return S::at(copy);
+  }
+  template <class F>
+  in_device_memory with_pieces(const F& f) const
+    requires requires(const S s) { s.with_pieces(f); }
+  {
+    return S::with_pieces(f);
+  }
 };
 
 namespace detail {

@@ -4,7 +4,7 @@
 
 #include <clearance/backends/one_call.hpp>
 #include <clearance/backends/plain.hpp>
-#include <clearance/frames/clouds.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/pairwise/engine.hpp>
 #include <clearance/robot/model.hpp>
 
@@ -129,16 +129,6 @@ std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
                   "or one, for one part");
     return poses;
   }
-}
-
-/// Can `On` read these clouds? With a reason if not.
-template <class On, class Clouds>
-consteval bool explain_readable() {
-  constexpr bool fits = !std::is_same_v<backend_of_t<On>, host> || !some_on_device<Clouds>;
-  static_assert(fits,
-                "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
-                "them into a thrust::host_vector");
-  return fits;
 }
 
 /// How every prepared question is asked. `Query` has `run(poses, clouds, question)`, and what else it can.
@@ -296,8 +286,12 @@ class query : detail::one_robot<On, PartView>,
   template <class S>
     requires point_source<S> || point_container<S>
   void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
-    const detail::in_use::call only(callable::used());
-    for_each_cloud(cloud, [&](const auto& source, const auto&) { engine::start_with(poses, source, cloud_pose, to); });
+    if constexpr (point_container<S>) {
+      enqueue(poses, points_of(cloud), cloud_pose, to);
+    } else {
+      const detail::in_use::call only(callable::used());
+      engine::start_with(poses, detail::read_here(cloud), cloud_pose, to);
+    }
   }
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
