@@ -275,6 +275,31 @@ TEST_CASE("Points in three arrays are read like a span, also four at once, filte
   }
 }
 
+TEST_CASE("What is in a device's memory can be copied to another device, whatever views it") {
+  const given g;
+  const auto x = g.column(0), y = g.column(1), z = g.column(2);
+  const zip_of<far_pointer<const float>> zip{{{x.data()}, {y.data()}, {z.data()}}};
+  const auto pieces = [](const auto& source) {
+    std::vector<std::vector<std::byte>> copies;
+    const auto there = clearance::frames::over_copies(source, [&](std::span<const std::byte> bytes, std::uint32_t) {
+      return copies.emplace_back(bytes.begin(), bytes.end()).data();
+    });
+    static_assert(std::is_same_v<decltype(there), const std::remove_cvref_t<decltype(source)>>);
+    verdict v;
+    for (std::size_t i = 0; i < source.size(); ++i)
+      v.require(same_bytes(there[i].position, source[i].position), "point", i);
+    return copies.size();
+  };
+  const in_device_memory span{point_span(g.points)};
+  const auto arrays = points_of(zip, x.size());
+  const std::vector labels(g.points.size(), clearance::point_label::rest);
+  CHECK((pieces(span) == 1 && pieces(arrays) == 3));
+  CHECK((pieces(clearance::masked(span, labels.data())) == 1 && pieces(clearance::masked(arrays, labels.data())) == 3));
+  CHECK(pieces(clearance::sharded(std::vector{span, span})) == 2);
+  CHECK(pieces(clearance::sharded(std::vector{arrays, arrays})) == 6);
+  CHECK((pieces(clearance::uncertain(span)) == 1 && pieces(clearance::uncertain(arrays)) == 3));
+}
+
 TEST_CASE("An iterator whose neighbours are no neighbours in memory is refused") {
   std::vector<tight> points(8);
   using forwards = adapted<tight*>;

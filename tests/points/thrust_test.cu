@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Thrust's and CUDA's containers are clouds as they stand: in every form the answers have the bits of a point_span's,
 // and answers come into Thrust's vectors.
+#include "support/same_answer.hpp"
 #include "support/same_result.hpp"
 
 #include <clearance/chunked_query.hpp>
@@ -10,6 +11,7 @@
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/self_filter.hpp>
+#include <clearance/questions/zones.hpp>
 #include <clearance/volume/sphere.hpp>
 
 #include <thrust/device_vector.h>
@@ -181,6 +183,13 @@ TEST_CASE("A device_vector is asked in every form, and answers come into device_
   const clearance::point_counts counted = counts[0];
   v.require(std::ranges::equal(std::span(copy.data(), copy.size()), all.distance, same_bits), "distances");
   v.require(counted.valid == all.counts.valid && counted.seen == cloud.size(), "their counts");
+
+  const clearance::zones zones{.thresholds = {0.1, 0.5}};
+  const auto expected_zones = ask(host{}, g.on_host, g.poses, plain, g.pose, zones);
+  const auto in_zones = [&](const auto& placed) {
+    return same_answer(ask(g.gpu, g.robot, g.poses, placed, zones), expected_zones);
+  };
+  v.require(in_zones(placed{cloud, g.pose}) && in_zones(std::tuple(placed{cloud, g.pose})), "a question about pairs");
 
   const clearance::self_filter filter{.padding = {0.05}};
   const auto hidden = ask(host{}, g.on_host, g.poses, plain, filter);

@@ -4,7 +4,7 @@
 
 #include <clearance/backends/one_call.hpp>
 #include <clearance/backends/plain.hpp>
-#include <clearance/frames/clouds.hpp>
+#include <clearance/frames/readable.hpp>
 #include <clearance/query/engine.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/visitor/nearest.hpp>
@@ -131,16 +131,6 @@ std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
   }
 }
 
-/// Can `On` read these clouds? With a reason if not.
-template <class On, class Clouds>
-consteval bool explain_readable() {
-  constexpr bool fits = !std::derived_from<On, host> || !some_on_device<Clouds>;
-  static_assert(fits,
-                "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
-                "them into a thrust::host_vector");
-  return fits;
-}
-
 /// How every prepared question is asked. `Query` has `run(poses, clouds, question)`, and what else it can.
 template <class Query, class On, class Q>
 class callable {
@@ -232,10 +222,8 @@ struct out_of<Q> {
 
 /// An engine that reads poses from memory when it runs: `start_with(poses, source, cloud pose, out)`.
 template <class E, class Q>
-concept posed_engine =
-    requires(E its, const world_transform* poses, const point_span& source, const typename out_of<Q>::type& to) {
-      its.start_with(poses, source, poses, to);
-    };
+concept posed_engine = requires(E its, const world_transform* poses, const point_span& source,
+                                const typename out_of<Q>::type& to) { its.start_with(poses, source, poses, to); };
 
 /// Is there a scan for this backend? <clearance/device.cuh> says so for devices.
 template <class On>
@@ -309,13 +297,15 @@ class query : detail::one_robot<On, PartView>,
   template <class S>
     requires point_source<S> || point_container<S>
   void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
-    const detail::in_use::call only(callable::used());
-    for_each_cloud(cloud, [&](const auto& source, const auto&) {
-      constexpr bool reads = detail::posed_engine<engine, Q>;
-      static_assert(reads,
-                    "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
-      if constexpr (reads) engine::start_with(poses, source, cloud_pose, to);
-    });
+    constexpr bool reads = detail::posed_engine<engine, Q>;
+    static_assert(reads,
+                  "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
+    if constexpr (point_container<S>) {
+      enqueue(poses, points_of(cloud), cloud_pose, to);
+    } else if constexpr (reads) {
+      const detail::in_use::call only(callable::used());
+      engine::start_with(poses, detail::read_here(cloud), cloud_pose, to);
+    }
   }
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
