@@ -270,10 +270,10 @@ void check_what_is_made_of_questions(const B& there, verdict& v) {
     for (auto& link : links) link.value = 0, link.factor = 1;
     const clearance::joint_chain<host> chain(links, {0, 1, 2, 3}, {{"turn", {-3, 3}}});
     const std::vector<double> joints{-1, 0, 0.5, 2};
-    clearance::query mine(on, robot, clearance::min_distances{}), theirs(host{}, model, clearance::min_distances{});
-    walked("min_distances of joint vectors",
-           same_answer(clearance::min_distances_result(mine(chain, joints, f.here())),
-                       clearance::min_distances_result(theirs(chain, joints, f.here()))));
+    clearance::query mine(on, robot, clearance::min_distances{});
+    clearance::query theirs(host{}, model, clearance::min_distances{});
+    const clearance::min_distances_result expected = theirs(chain, joints, f.here());
+    walked("min_distances of joint vectors", same_answer(mine(chain, joints, f.here()), expected));
   }
   {  // a part alone
     const auto part = model.parts()[0];

@@ -76,6 +76,15 @@ struct scan_body {
   }
 };
 
+/// After a loop: makes counts of what was dropped.
+struct tell_counts {
+  const drop_counts* from;
+  point_counts* to;
+  std::uint64_t seen;
+
+  CLEARANCE_HD void operator()(std::size_t) const { count(*to, from->dropped, seen); }
+};
+
 /// Enqueues a loop over the points of all clouds of a frame, on any backend without its own scan. `answer(source,
 /// turn)` is the answer of `scan_body` for a cloud, `here(source, cloud)` a source that the backend can read. Returns
 /// the facts of all clouds together.
@@ -100,7 +109,7 @@ frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
             scan_body<PartView, S, std::remove_const_t<decltype(walk)>, std::remove_const_t<decltype(its)>>{
                 model.parts, places.data(), parts, source, frame.origin, now.first, dropped.data(), its, walk});
       });
-  on.for_each(1, [from = dropped.data(), counts, seen](std::size_t) { count(*counts, from->dropped, seen); });
+  on.for_each(1, tell_counts{dropped.data(), counts, seen});
   return frame;
 }
 

@@ -8,9 +8,9 @@ namespace clearance {
 
 /// Depth first on the call stack, children in stored order: the paper's Algorithm 4.
 struct recursive {
-  /// Upper bound of one level's bytes on a device's call stack. For the library's trees ptxas reports at most 240
-  /// (triangles in boxes, sm_75), and 144 with inner spheres. A primitive of your own may need more.
-  static constexpr std::size_t bytes_a_level = 256;
+  /// Upper bound of one level's bytes on a device's call stack. For the library's trees ptxas reports at most 344
+  /// (triangles in boxes, points with radii, sm_75), and 208 with inner spheres. A primitive of your own may need more.
+  static constexpr std::size_t bytes_a_level = 384;
 
   /// The cudaLimitStackSize that a launch needs, in bytes, with room for the kernel itself.
   static std::size_t device_stack(std::uint32_t depth) { return 512 + (depth + 1) * bytes_a_level; }
