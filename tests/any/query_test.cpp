@@ -7,6 +7,7 @@
 
 #include <clearance/any/query.hpp>
 #include <clearance/points/strided_points.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/signed_distances.hpp>
 #include <clearance/questions/zones.hpp>
@@ -77,6 +78,7 @@ TEST_CASE("A question behind an interface has the bits of the library's query") 
       unsure.push_back(placed{uncertain(source, noise, {.shift = 0.003}), pose});
   });
   check(zones{{0.2, 0.7}}, unsure);
+  check(certain_distance{}, unsure);
 }
 
 TEST_CASE("A question behind an interface says what is known when its time is over") {

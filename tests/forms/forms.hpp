@@ -29,8 +29,8 @@ namespace testing {
 
 template <class Q>
 struct forms_of {
-  static constexpr bool in_pieces = clearance::merging_question<Q> || requires { typename Q::template joined<int>; };
-  static constexpr bool enqueued = requires { typename Q::out; } || requires { typename Q::searched; };
+  static constexpr bool in_pieces = clearance::merging_question<Q> || clearance::joining_question<Q>;
+  static constexpr bool enqueued = clearance::writing_question<Q> || requires { typename Q::searched; };
   static constexpr bool by_deadline = in_pieces && clearance::partial_question<Q>;
 };
 
@@ -111,6 +111,7 @@ inline std::string table_of_forms() {
       "--- |\n";
   const auto row = [&]<class Q>(const char* name, const Q&) {
     using forms = forms_of<Q>;
+    static_assert(clearance::has_list<Q>, "a question of the library lists what it can: a misspelt member is missed");
     const auto word = [](bool has) { return has ? "yes" : "no"; };
     table += std::string("| `") + name + "` | yes | " + word(forms::enqueued) + " | " + word(forms::in_pieces) + " | " +
              word(forms::by_deadline) + " |\n";
