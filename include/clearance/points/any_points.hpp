@@ -2,6 +2,7 @@
 #pragma once
 // A source of any kind, for programs that learn the kind while they run: a question is compiled once for all of them.
 
+#include <clearance/points/arrays.hpp>
 #include <clearance/points/tile.hpp>
 
 #include <cstring>
@@ -20,6 +21,7 @@ class any_points {
     requires(!std::same_as<S, any_points>)
   any_points(const S& source) : of_(&functions_of<S>), size_(source.size()) {
     static_assert(points_alone<S>());
+    static_assert(!detail::only_on_device<S>(), "any_points are read by a host, and these are in a device's memory");
     static_assert(sizeof(S) <= sizeof view_ && alignof(S) <= alignof(any_points), "any_points has no room for this");
     std::memcpy(view_, &source, sizeof source);
   }

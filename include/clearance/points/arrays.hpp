@@ -96,6 +96,10 @@ concept zips_coordinates = requires(const P p) {
 template <class P>
 concept host_readable = std::is_lvalue_reference_v<decltype(*std::declval<const P&>())>;
 
+template <class P>
+concept zip_host_readable = host_readable<zipped_iterator<P, 0>> && host_readable<zipped_iterator<P, 1>> &&
+                            host_readable<zipped_iterator<P, 2>>;
+
 /// Throws std::invalid_argument unless neighbours of an iterator are neighbours in memory.
 template <class P>
 auto first_address(const P& first, std::size_t count) {
@@ -140,10 +144,7 @@ auto points_of(const P& first, std::size_t count) {
   const auto& all = first.get_iterator_tuple();
   const coordinate_arrays arrays{detail::first_address(get<0>(all), count), detail::first_address(get<1>(all), count),
                                  detail::first_address(get<2>(all), count), count};
-  return detail::marked < detail::host_readable<detail::zipped_iterator<P, 0>> &&
-             detail::host_readable<detail::zipped_iterator<P, 1>> &&
-             detail::host_readable < detail::zipped_iterator < P,
-         2 >>> (arrays);
+  return detail::marked<detail::zip_host_readable<P>>(arrays);
 }
 
 /// An array of points, or a view of one: whatever has a pointer to records with x, y and z, and a size.
