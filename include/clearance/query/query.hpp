@@ -232,6 +232,14 @@ struct out_of<Q> {
   using type = typename Q::out;
 };
 
+/// Does an engine read poses where a device has them, and does it place configurations there?
+template <class Engine, class S, class Out>
+concept reads_poses = requires(Engine& its, const world_transform* poses, const S& source, const Out& to) {
+  its.start_with(poses, source, poses, to);
+};
+template <class Engine, class Clouds, class Q>
+concept places = requires(Engine& its, const Clouds& clouds, const Q& q) { its.start_placed(clouds, q); };
+
 /// Is there a scan for this backend? <clearance/device.cuh> says so for devices.
 template <class On>
 inline constexpr bool has_scan = !requires { typename On::own_scan; };
@@ -303,7 +311,7 @@ class query : detail::one_robot<On, PartView>,
   /// captures this sees the memory of each launch.
   template <point_source S>
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose, const out& to) {
-    constexpr bool reads = requires(engine& its) { its.start_with(poses, source, cloud_pose, to); };
+    constexpr bool reads = detail::reads_poses<engine, S, out>;
     static_assert(reads,
                   "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
     const detail::in_use::call only(callable::used());
@@ -312,7 +320,7 @@ class query : detail::one_robot<On, PartView>,
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
   auto enqueue(const Clouds& clouds, const Q& q) {
-    constexpr bool places = requires(engine& its) { its.start_placed(clouds, q); };
+    constexpr bool places = detail::places<engine, Clouds, Q>;
     static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
     const detail::in_use::call only(callable::used());
     if constexpr (places) return engine::start_placed(clouds, q);
