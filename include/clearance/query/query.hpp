@@ -220,10 +220,13 @@ struct out_of<Q> {
   using type = typename Q::out;
 };
 
-/// An engine that reads poses from memory when it runs: `start_with(poses, source, cloud pose, out)`.
-template <class E, class Q>
-concept posed_engine = requires(E its, const world_transform* poses, const point_span& source,
-                                const typename out_of<Q>::type& to) { its.start_with(poses, source, poses, to); };
+/// Does an engine read poses where a device has them, and does it place configurations there?
+template <class Engine, class S, class Out>
+concept reads_poses = requires(Engine& its, const world_transform* poses, const S& source, const Out& to) {
+  its.start_with(poses, source, poses, to);
+};
+template <class Engine, class Clouds, class Q>
+concept places = requires(Engine& its, const Clouds& clouds, const Q& q) { its.start_placed(clouds, q); };
 
 /// Is there a scan for this backend? <clearance/device.cuh> says so for devices.
 template <class On>
@@ -297,10 +300,10 @@ class query : detail::one_robot<On, PartView>,
   template <class S>
     requires point_source<S> || point_container<S>
   void enqueue(const world_transform* poses, const S& cloud, const world_transform* cloud_pose, const out& to) {
-    constexpr bool reads = detail::posed_engine<engine, Q>;
+    constexpr bool reads = detail::reads_poses<engine, point_span, out>;
     static_assert(reads,
                   "poses in memory are read by min_distance and min_distance_per_part on a device{}, not by plain");
-    if constexpr (point_container<S>) {
+    if constexpr (reads && point_container<S>) {
       enqueue(poses, points_of(cloud), cloud_pose, to);
     } else if constexpr (reads) {
       const detail::in_use::call only(callable::used());
@@ -310,7 +313,7 @@ class query : detail::one_robot<On, PartView>,
   /// About placed configurations: returns device memory with one result per configuration.
   template <class Clouds>
   auto enqueue(const Clouds& clouds, const Q& q) {
-    constexpr bool places = requires(engine& its) { its.start_placed(clouds, q); };
+    constexpr bool places = detail::places<engine, Clouds, Q>;
     static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
     const detail::in_use::call only(callable::used());
     if constexpr (places) return engine::start_placed(clouds, q);
