@@ -67,11 +67,11 @@ CLEARANCE_ABILITY(partial, so_far, partial_question,
 
 /// A question that can refuse what no frame could mend when a `query` is made.
 template <class Q>
-concept checking_question = question<Q> && requires(const Q q, std::size_t parts) {
+concept checking_question = question<Q> && (requires(const Q q, std::size_t parts) {
   { q.check(parts) } -> std::same_as<void>;
 } || requires(const Q q) {
   { q.check() } -> std::same_as<void>;
-};
+});
 CLEARANCE_ABILITY(checking, check, checking_question,
                   "a checking question needs: void check(std::size_t parts) const, or void check() const");
 
