@@ -203,14 +203,16 @@ concept filtered_source = point_source<S> && requires(const S s, vec3 p) {
 };
 CLEARANCE_SOURCE_CAN(filtered, filter, filtered_source, "point_filter filter");
 
-/// A source in ordinary host memory, of which a device makes copies.
-/// Law: `bytes()` is the memory that is read, and `at(copy)` the same source over a copy of it. Optional:
-/// `bytes(begin, end)`, what points `begin` to `end - 1` need of it.
+/// What lies in ordinary host memory, of which a device makes copies.
+/// Law: `bytes()` is the memory that is read, and `at(copy)` the same over a copy of it.
 template <class S>
-concept copied_source = point_source<S> && requires(const S s, const std::byte* copy) {
+concept copied_memory = requires(const S s, const std::byte* copy) {
   { s.bytes() } -> std::same_as<std::span<const std::byte>>;
   { s.at(copy) } -> std::same_as<S>;
 };
+/// A source in such memory. Optional: `bytes(begin, end)`, what points `begin` to `end - 1` need of it.
+template <class S>
+concept copied_source = point_source<S> && copied_memory<S>;
 CLEARANCE_SOURCE_ABILITY(copied, copied_source,
                          CLEARANCE_SOURCE_HAS(copied, bytes, "std::span<const std::byte> bytes() const",
                                               std::span<const std::byte>, s.bytes());
@@ -250,7 +252,7 @@ struct same_piece {
 }  // namespace detail
 
 /// A source whose points lie in several pieces of memory.
-/// Law: `with_pieces(f)` is the same source with `f(piece)` in place of each.
+/// Law: `with_pieces(f)` is the same source with `f(piece)` in place of each, a source or `copied_memory`.
 template <class S>
 concept source_in_pieces = point_source<S> && requires(const S s) {
   { s.with_pieces(detail::same_piece{}) } -> std::same_as<S>;

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <clearance/solid/close_mesh.hpp>
+#include <clearance/solid/winding.hpp>
 
 #include <random>
 

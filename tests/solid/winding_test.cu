@@ -4,6 +4,7 @@
 
 #include <clearance/backends/device.cuh>
 #include <clearance/solid/close_mesh.hpp>
+#include <clearance/solid/winding.hpp>
 
 #include <random>
 

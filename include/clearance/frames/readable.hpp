@@ -39,7 +39,7 @@ template <point_source S, class Copy>
 S over_copies(const S& source, const Copy& copy) {
   std::uint32_t n = 0;
   const auto one = [&](const auto& piece, const auto& again) {
-    if constexpr (copied_source<std::remove_cvref_t<decltype(piece)>>) {
+    if constexpr (copied_memory<std::remove_cvref_t<decltype(piece)>>) {
       const std::span<const std::byte> bytes = piece.bytes();
       const std::byte* const there = piece.size() == 0 || bytes.empty() ? bytes.data() : copy(bytes, n++);
       return there == bytes.data() ? piece : piece.at(there);

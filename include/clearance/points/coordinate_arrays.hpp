@@ -81,6 +81,7 @@ struct coordinate_arrays {
   }
 };
 
-static_assert(fetched_source<coordinate_arrays> && unfiltered_source<coordinate_arrays>);
+static_assert(fetched_source<coordinate_arrays> && unfiltered_source<coordinate_arrays> &&
+              copied_memory<coordinate_arrays::column>);
 
 }  // namespace clearance
