@@ -12,7 +12,9 @@ struct coordinate_arrays {
   using can = clearance::can<sources::fetched, sources::unfiltered, sources::filtered, sources::slicing,
                              sources::copied_in_pieces, sources::checked>;
 
-  const real *x = nullptr, *y = nullptr, *z = nullptr;
+  const real* x = nullptr;
+  const real* y = nullptr;
+  const real* z = nullptr;
   std::size_t count = 0;
   point_filter filter = {};
 
