@@ -146,8 +146,8 @@ any_cloud near_robot(const cloud_object& object, const Eigen::Vector3d& robot) {
   return cloud;
 }
 
-cloud_object points_of(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
-                       bool zero_is_missing) {
+cloud_object cloud_of_points(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
+                             bool zero_is_missing) {
   cloud_object made;
   std::array<std::int64_t, 3> offsets{};
   std::size_t axes = 0;
@@ -181,7 +181,7 @@ cloud_object points_of(nb::handle points, nb::handle pose, double nearest, doubl
       const nb::object copy = seen.device == on_the_host
                                   ? nb::object(nb::module_::import_("numpy").attr("ascontiguousarray")(points))
                                   : points.attr(nb::hasattr(points, "contiguous") ? "contiguous" : "copy")();
-      return points_of(copy, pose, nearest, farthest, sensor, zero_is_missing);
+      return cloud_of_points(copy, pose, nearest, farthest, sensor, zero_is_missing);
     }
   if (!(nearest >= 0) || !(farthest >= nearest))
     throw std::invalid_argument("clearance: nearest is 0 or more, and farthest not less; here are " +
@@ -320,7 +320,7 @@ void bind_clouds(nb::module_& m) {
            })
       .def_prop_ro("device", [](const cloud_object& c) { return device_name(c.device); });
   m.def(
-      "points", &points_of, nb::arg("points"), nb::arg("pose").none() = nb::none(), nb::kw_only(),
+      "points", &cloud_of_points, nb::arg("points"), nb::arg("pose").none() = nb::none(), nb::kw_only(),
       nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity), nb::arg("sensor").none() = nb::none(),
       nb::arg("zero_is_missing") = false,
       "A cloud of points, (n, 3) or (rows, columns, 3), float32 or float64, or structured with x, y, z; metres; read "

@@ -32,8 +32,8 @@ struct cloud_object {
 /// For a robot at this place: doubles far from (0, 0, 0) become floats relative to a place near it.
 any_cloud near_robot(const cloud_object& cloud, const Eigen::Vector3d& robot);
 
-cloud_object points_of(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
-                       bool zero_is_missing);
+cloud_object cloud_of_points(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
+                             bool zero_is_missing);
 cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest,
                       double farthest, bool minus_infinity_is_near, nb::handle rays);
 

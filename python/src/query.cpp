@@ -268,7 +268,7 @@ struct query_object {
       if (ready)
         put(*ready, "points");
       else
-        put(points_of(points, cloud_pose, 0, infinity, nb::none(), false), "points");
+        put(cloud_of_points(points, cloud_pose, 0, infinity, nb::none(), false), "points");
     } else if (!cloud_pose.is_none()) {
       throw std::invalid_argument("clearance: cloud_pose is given without points");
     }
@@ -287,7 +287,7 @@ struct query_object {
         if (nb::try_cast(each, ready) && ready)
           put(*ready, "one of the clouds");
         else
-          put(points_of(each, nb::none(), 0, infinity, nb::none(), false), "one of the clouds");
+          put(cloud_of_points(each, nb::none(), 0, infinity, nb::none(), false), "one of the clouds");
       }
     else if (points.is_none() && depth.is_none())
       throw std::invalid_argument("clearance: nothing is given to look at: points, depth or clouds");
