@@ -453,6 +453,8 @@ def _chosen(recording, watch, topics, joint_topic, tf_topics):
                 raise ValueError(f"the topic {_described(recording, topic)} is in no encoding that is read; {has}")
     if not frames:
         raise ValueError(f"there is no PointCloud2 and no depth Image to play; {has}")
+    if watch.cloud_scale != 1 and all(of[topic] != recordings.CLOUD for topic in frames):
+        raise ValueError(f"cloud_scale is for PointCloud2s, and none of the topics that are played is one; {has}")
     others = []
     if watch.by_joints and watch.moving:
         named = [joint_topic] if isinstance(joint_topic, str) else list(joint_topic or by_kind[recordings.JOINTS])

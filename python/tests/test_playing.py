@@ -499,6 +499,8 @@ def test_compressed_depth_is_played_as_the_image_that_was_packed(urdf, tmp_path)
         assert row.seen == whole.seen and row.valid == whole.valid
         quantised += row.distance != whole.distance
     assert quantised > 8
+    with pytest.raises(ValueError, match=r"cloud_scale is for PointCloud2s, and none of the topics that are played is one; .*/far/"):
+        playing.play(bag(tmp_path / "again", compressed_drive()), robot, topics="/far/image", cloud_scale=0.001)
 
 
 def test_what_quantised_depth_hides_is_not_free(tmp_path):
