@@ -3,8 +3,8 @@
 // A mesh as files hold it, with faces of any number of corners, and its triangles.
 
 #include <clearance/io/error.hpp>
-#include "solid/polygon.hpp"
 #include <clearance/solid/triangle_mesh.hpp>
+#include "solid/polygon.hpp"
 
 #include <Eigen/Geometry>
 
