@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Every source of ours is as .clang-format lays it out; other versions of clang-format lay out otherwise.
-foreach(folder include tools tests examples bench python packaging)
+foreach(folder include src tools tests examples bench python packaging)
   foreach(kind hpp cuh cpp cu)
     file(GLOB_RECURSE some ${ROOT}/${folder}/*.${kind})
     list(APPEND sources ${some})

@@ -2,9 +2,10 @@
 #pragma once
 // A mesh as files hold it, with faces of any number of corners, and its triangles.
 
+#include "solid/polygon.hpp"
+
 #include <clearance/io/error.hpp>
 #include <clearance/solid/triangle_mesh.hpp>
-#include "solid/polygon.hpp"
 
 #include <Eigen/Geometry>
 
