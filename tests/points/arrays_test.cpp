@@ -68,7 +68,7 @@ struct adapted {
   P its;
   P base() const { return its; }
   decltype(*std::declval<const P&>()) operator*() const { return *its; }
-  adapted operator+(std::size_t n) const { return {its + std::size_t(Step) * n}; }
+  adapted operator+(std::size_t n) const { return {its + std::ptrdiff_t(n) * Step}; }
 };
 template <class P>
 struct zip_of {
