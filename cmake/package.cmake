@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cpack makes clearance-dev_*.deb: headers and CMake files, for every architecture; and libclearance-io-dev_*.deb, the
-# compiled component io, where its packages are installed.
+# compiled components solid and io, where io's packages are installed.
 
 # The version is in include/clearance/ground/config.hpp; package.xml, which other tools read, must have the same one.
 file(STRINGS package.xml said REGEX "<version>")
@@ -42,8 +42,8 @@ every frame, and gives the minimum distance with its witness and an interval
 that certainly contains the true one, on the CPU and on an NVIDIA GPU.
 .
 This package has the C++20 and CUDA headers, and the files for CMake's
-find_package. Its component io, which reads robots, meshes and clouds from
-files, is in libclearance-io-dev.")
+find_package. The components solid, which closes and packs meshes, and io,
+which reads robots, meshes and clouds from files, are in libclearance-io-dev.")
 if(TARGET clearance_io)
   list(APPEND CPACK_COMPONENTS_ALL io)
   set(CPACK_COMPONENT_IO_GROUP io)
@@ -51,8 +51,9 @@ if(TARGET clearance_io)
   set(CPACK_DEBIAN_IO_PACKAGE_DEPENDS
       "clearance-dev (= ${PROJECT_VERSION}-1), libexpat1-dev, libyaml-cpp-dev, liblzf-dev, libtbb-dev")
   set(CPACK_DEBIAN_IO_DESCRIPTION
-"This package has the compiled component io of clearance, which reads and
-writes files of robots, meshes, spheres, clouds and images.")
+"This package has the compiled components of clearance: solid, which closes
+and packs meshes, and io, which reads and writes files of robots, meshes,
+spheres, clouds and images.")
 endif()
 
 # Debian's files in /usr/share/doc, besides those of every installation.
