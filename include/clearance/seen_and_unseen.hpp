@@ -32,32 +32,42 @@ class seen_and_unseen::engine {
         seen_(beside_.on(), model, from...),
         unseen_(on, model, from...) {}
 
-  /// The result stays valid until the next call.
   template <class Clouds>
-  const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const seen_and_unseen& q) {
-    q.check(), detail::check_labels(q.labels, clouds);
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const seen_and_unseen& q) {
+    q.check();
+    detail::check_labels(q.labels, clouds);
     const auto& here = readable_(clouds);
-    if (q.labels.empty()) return run_both(poses, here, here, q);
     memory_.begin();
-    return run_both(poses, here, masked_clouds(here, std::get<0>(memory_.put(q.labels))), q);
+    if (q.labels.empty())
+      begin_both(poses, here, here, q);
+    else
+      begin_both(poses, here, masked_clouds(here, std::get<0>(memory_.put(q.labels))), q);
   }
-  /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() { seen_.forget(), unseen_.forget(); }
-
- private:
-  template <class Clouds, class Shown>
-  const result& run_both(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Shown& shown,
-                         const unseen& q) {
-    beside_.follow();
+  /// The result stays valid until the next call.
+  result& finish() {
     try {
-      seen_.begin(poses, shown, min_distance{});
-      static_cast<unseen_result&>(result_) = unseen_.run(poses, clouds, q);
+      static_cast<unseen_result&>(result_) = unseen_.finish();
       result_.seen = seen_.finish();
     } catch (...) {
       beside_.wait();  // it may still read the clouds
       throw;
     }
     return result_;
+  }
+  /// Forgets the last frame. The next one starts cold; its answer is the same.
+  void forget() { seen_.forget(), unseen_.forget(); }
+
+ private:
+  template <class Clouds, class Shown>
+  void begin_both(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Shown& shown, const unseen& q) {
+    beside_.follow();
+    try {
+      seen_.begin(poses, shown, min_distance{});
+      unseen_.begin(poses, clouds, q);
+    } catch (...) {
+      beside_.wait();  // it may still read the clouds
+      throw;
+    }
   }
 
   frames::readable_clouds<On> readable_;

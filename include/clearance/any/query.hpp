@@ -112,9 +112,9 @@ class prepared : public Interface {
                                             const std::vector<cloud_type>& clouds, const question_type& q) override {
     if constexpr (placing_engine<query_type>) {
       place(poses);
-      return query_(clouds, q);
+      return std::move(query_)(clouds, q);
     } else {
-      return query_(poses, read(clouds), q);
+      return std::move(query_)(poses, read(clouds), q);
     }
   }
   void forget() override { query_.forget(); }

@@ -4,6 +4,7 @@
 
 #include <clearance/backends/kept_memory.hpp>
 #include <clearance/backends/one_call.hpp>
+#include <clearance/backends/readback.hpp>
 #include <clearance/concepts.hpp>
 
 namespace clearance {
@@ -35,6 +36,12 @@ template <class B, class Traversal>
 class memory_of<plain<B, Traversal>> : public memory_of<B> {
  public:
   using memory_of<B>::memory_of;
+};
+
+template <class B, class Traversal>
+class readback<plain<B, Traversal>> : public readback<B> {
+ public:
+  using readback<B>::readback;
 };
 
 }  // namespace backends

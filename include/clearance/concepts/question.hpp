@@ -129,10 +129,10 @@ CLEARANCE_ABILITY(
     concluding, conclude, question,
     "a concluding question needs: template <class Asked> void conclude(const Asked&, const answer&, const "
     "out&) const");
-/// `more(asked, out)` says how much room `space(asked, least)` must have, or 0: then it was enough.
+/// `more(asked, out, result)` reads the result and returns 0, or says how much room `space(asked, least)` must have.
 CLEARANCE_ABILITY(retrying, more, question,
-                  "a retrying question needs: template <class Asked> std::size_t more(const Asked&, const out&) const, "
-                  "and out space(const Asked&, std::size_t least) const");
+                  "a retrying question needs: template <class Asked> std::size_t more(const Asked&, const out&, "
+                  "result&) const, and out space(const Asked&, std::size_t least) const");
 /// `counts_of(out)` is where the counts go, instead of `out.counts`.
 template <class Q>
 concept counting_question = question<Q> && requires(const typename Q::out& to) {

@@ -4,6 +4,7 @@
 
 #include <clearance/backends/device_buffer.cuh>
 #include <clearance/backends/own_stream.cuh>
+#include <clearance/backends/readback.cuh>
 #include <clearance/frames/clouds.hpp>
 #include <clearance/frames/readable.cuh>
 #include <clearance/minimum/engine.hpp>
@@ -163,26 +164,15 @@ class engine<device, PartView, Q> {
   engine(engine&&) = default;
   ~engine() { settle(); }
 
-  /// The result stays valid until the next call.
+  /// Enqueues a frame whose result `finish` waits for. Its last kernel writes it to pinned memory.
   template <class Clouds>
-  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    begin(poses, clouds, q);
-    return finish();
-  }
-  /// Takes all pinned memory, which a first frame does otherwise. Kept memory is a thread's own, so that a question
-  /// that others ask for it takes it here.
-  void reserve() {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
     if constexpr (Q::per_part)
       if (minima_.data() == nullptr) minima_ = pinned_buffer<part_minimum>(search_.parts(), on_.id, pinned_);
     if (answer_.data() == nullptr) {
       answer_ = pinned_buffer<answer>(1, on_.id, pinned_);
       answer_.data()->done = 0;
     }
-  }
-  /// Enqueues a frame whose result `finish` waits for.
-  template <class Clouds>
-  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
-    reserve();
     ++frame_number_;
     asked_ = true;
     search_.template enqueue<Q::per_part>(
@@ -190,10 +180,9 @@ class engine<device, PartView, Q> {
         [&](const auto& source, std::uint32_t cloud) { return copies_(source, cloud); }, &answer_.data()->done,
         frame_number_);
   }
+  /// The result stays valid until the next call.
   const typename Q::result& finish() {
-    const volatile std::uint32_t& done = answer_.data()->done;
-    for (unsigned spins = 1; done != frame_number_; ++spins)
-      if (spins % 4096 == 0 && cudaStreamQuery(on_.stream) != cudaErrorNotReady && done != frame_number_) on_.wait();
+    backends::watch(on_, answer_.data()->done, frame_number_);
     asked_ = false;
     if constexpr (Q::per_part) {
       result_.all = answer_.data()->result;

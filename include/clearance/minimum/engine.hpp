@@ -2,6 +2,8 @@
 #pragma once
 // Asks for the least distance on one backend, frame after frame.
 
+#include <clearance/backends/kept_memory.hpp>
+#include <clearance/backends/readback.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/minimum/host_search.hpp>
 
@@ -22,37 +24,38 @@ class engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), parts_(model.size()), readable_(on, from...), search_(on, model) {}
+      : parts_(model.size()), memory_(on, from...), back_(on, from...), readable_(on, from...), search_(on, model) {}
 
   template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
-    auto result = on_.template make_scratch<min_distance_result>(1);
-    auto minima = on_.template make_scratch<part_minimum>(Q::per_part ? parts_ : 0);
-    search_(poses, readable_(clouds), result.data(), Q::per_part ? minima.data() : nullptr);
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+    memory_.begin();
+    there_ = memory_.template space<min_distance_result>(1).data();
+    minima_ = Q::per_part ? memory_.template space<part_minimum>(parts_).data() : nullptr;
+    search_(poses, readable_(clouds), there_, minima_);
+  }
+  const typename Q::result& finish() {
     if constexpr (Q::per_part)
-      return {on_.copy_out(result.data(), 1)[0], on_.copy_out(minima.data(), minima.size())};
+      back_(backends::read_value<min_distance_result>{result_.all, there_},
+            backends::read_array<part_minimum>{result_.parts, minima_, parts_});
     else
-      return on_.copy_out(result.data(), 1)[0];
+      back_(backends::read_value<min_distance_result>{result_, there_});
+    return result_;
   }
   template <class Clouds>
   void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
     const auto [result, minima] = minima_of<Q>(to);
     search_(poses, clouds, result, minima);
   }
-  /// The host waits, so that this is all.
-  template <class Clouds>
-  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    result_ = run(poses, clouds, q);
-  }
-  const typename Q::result& finish() const { return result_; }
-  void reserve() const {}
   void forget() const {}
 
  private:
-  On on_;
   std::size_t parts_;
+  backends::kept_memory<On> memory_;
+  backends::readback<On> back_;
   frames::readable_clouds<On> readable_;
   plain_search<On, PartView> search_;
+  min_distance_result* there_ = nullptr;
+  part_minimum* minima_ = nullptr;
   typename Q::result result_;
 };
 
@@ -62,24 +65,17 @@ class engine<host, PartView, Q> {
  public:
   engine(const host& on, const model_view<PartView>& model) : search_(on, model) {}
 
-  /// The result stays valid until the next call.
+  /// A host has nothing to wait for.
   template <class Clouds>
-  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&) {
     if constexpr (Q::per_part) {
       result_.parts.resize(search_.parts());
       search_(poses, clouds, &result_.all, result_.parts.data());
     } else {
       search_(poses, clouds, &result_);
     }
-    return result_;
-  }
-  /// A host has nothing to wait for.
-  template <class Clouds>
-  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    run(poses, clouds, q);
   }
   const typename Q::result& finish() const { return result_; }
-  void reserve() const {}
   template <class Clouds>
   void start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q&, const typename Q::out& to) {
     const auto [result, minima] = minima_of<Q>(to);

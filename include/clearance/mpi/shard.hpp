@@ -46,15 +46,16 @@ class query<Q, mpi::shard<On>, PartView>
   /// Throws std::invalid_argument if ranks do not ask the same. It also throws what this rank's own part throws; the
   /// other ranks then throw std::runtime_error with that message.
   template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     mpi::together all(comm_);
     all.agree(facts_.size(), poses, clouds);
     typename Q::result mine{};
     all.attempt([&] { mine = query_(poses, clouds, q); });
     detail::joined_of<Q, PartView> joined(q, facts_);
     all.join(joined, mine);
-    return joined.result();
+    result_ = joined.result();
   }
+  typename Q::result finish() { return *std::move(result_); }
   template <class... Arguments>
   void enqueue(const Arguments&...) {
     static_assert(sizeof...(Arguments) > 1000, "ranks have no one stream to enqueue in: their answer is waited for");
@@ -67,6 +68,7 @@ class query<Q, mpi::shard<On>, PartView>
   MPI_Comm comm_;
   std::span<const part_facts> facts_;
   query<Q, On, PartView> query_;
+  std::optional<typename Q::result> result_;
 };
 
 }  // namespace clearance

@@ -3,6 +3,7 @@
 // Gives every pair to an answer once, by the blocks of a device. The answer may also label every point.
 
 #include <clearance/backends/device.cuh>
+#include <clearance/backends/readback.cuh>
 #include <clearance/concepts.hpp>
 #include <clearance/frames/readable.cuh>
 #include <clearance/pairwise/each_pair.hpp>

@@ -3,6 +3,7 @@
 // Asks questions about pairs of a point and a part on one backend, frame after frame.
 
 #include <clearance/backends/kept_memory.hpp>
+#include <clearance/backends/readback.hpp>
 #include <clearance/frames/margins.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/pairwise/pairs_on.hpp>
@@ -21,6 +22,7 @@ struct asked {
   std::size_t clouds, points;               ///< How many clouds there are, and points of all clouds.
   std::vector<real>& reaches;               ///< For the question's use: how near a point must be to each part.
   backends::kept_memory<On>& memory;
+  backends::readback<On>& back;
   part_slops& slops;
 
   std::size_t parts() const { return facts.size(); }
@@ -36,10 +38,17 @@ struct asked {
   auto put(const Data&... data) const {
     return memory.put(data...);
   }
+  /// Waits, and takes what the backend wrote, all at once: each of `reads` is a `read_array` or a `read_value`.
+  template <class... Reads>
+  void bring(const Reads&... reads) const {
+    back(reads...);
+  }
   /// Waits, and copies `n` values from memory that the backend writes.
   template <class T>
   std::vector<T> copy_out(const T* data, std::size_t n) const {
-    return on.copy_out(data, n);
+    std::vector<T> values;
+    back(backends::read_array<T>{values, data, n});
+    return values;
   }
 };
 
@@ -67,17 +76,26 @@ consteval bool explain_pair_question() {
     return false;
 }
 
+/// In place of a result that is not kept.
+struct no_result {};
+
 /// What a pass over all pairs of a frame needs. It is kept from frame to frame.
 template <class On, class PartView>
 class passes {
  public:
   template <class... Memory>
   passes(const On& on, const model_view<PartView>& model, Memory... from)
-      : on(on), model(model), memory(on, from...), readable(on, from...), pairs_{on, model, from...} {}
+      : on(on),
+        model(model),
+        memory(on, from...),
+        back(on, from...),
+        readable(on, from...),
+        pairs_{on, model, from...} {}
 
   On on;
   model_view<PartView> model;
   backends::kept_memory<On> memory;
+  backends::readback<On> back;
   frames::readable_clouds<On> readable;
 
   /// Looks at a frame, and frees all rooms. Throws std::invalid_argument for poses that cannot be.
@@ -89,7 +107,16 @@ class passes {
   }
   /// The frame that was looked at.
   asked<On> last() {
-    return {on, model.facts, ahead_.frame, ahead_.first, ahead_.clouds, ahead_.points, ahead_.reaches, memory, slops_};
+    return {.on = on,
+            .facts = model.facts,
+            .frame = ahead_.frame,
+            .first = ahead_.first,
+            .clouds = ahead_.clouds,
+            .points = ahead_.points,
+            .reaches = ahead_.reaches,
+            .memory = memory,
+            .back = back,
+            .slops = slops_};
   }
 
   /// Enqueues a pass; clouds must be readable where it runs. `here(source, cloud)` is what is asked of a source.
@@ -97,13 +124,6 @@ class passes {
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                point_counts* counts, const Here& here = {}) {
     pairs_.enqueue(poses, clouds, answer, counts, here);
-  }
-  /// The same; waits.
-  template <class Clouds, answer Answer>
-  point_counts count(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer) {
-    point_counts* const counts = memory.template space<point_counts>(1).data();
-    enqueue(poses, clouds, answer, counts);
-    return on.copy_out(counts, 1)[0];
   }
 
  private:
@@ -114,9 +134,10 @@ class passes {
 
 template <pair_question Q, class On, class PartView>
 class engine {
-  static constexpr bool retries = retrying::is_there<Q>();
-
  public:
+  /// Whether there was enough room is known only when a frame is done.
+  static constexpr bool waits = retrying::is_there<Q>();
+
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
 
@@ -129,41 +150,41 @@ class engine {
     pass(a, poses, clouds, q, to);
     return a.certain();
   }
-  /// Enqueues a frame whose result `finish` waits for; `q` must stay until then.
+  /// Enqueues a frame whose result `finish` returns; `q` must stay until then. A question that retries is asked here
+  /// until there was enough room.
   template <class Clouds>
-  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q)
-    requires(!retries)
-  {
-    const auto a = passes_.prepare(poses, clouds);
-    asked_ = &q, to_ = q.space(a);
-    pass(a, poses, passes_.readable(clouds), q, to_);
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+    const auto& here = passes_.readable(clouds);
+    if constexpr (waits) {
+      static_assert(retrying::needs<requires(const asked<On>& a, const typename Q::out& to, typename Q::result& r,
+                                             std::size_t n) {
+        { q.space(a, n) } -> std::same_as<typename Q::out>;
+        { q.more(a, to, r) } -> std::same_as<std::size_t>;
+      }>());
+      for (std::size_t least = 0;;) {
+        const auto a = passes_.prepare(poses, clouds);
+        to_ = q.space(a, least);
+        pass(a, poses, here, q, to_);
+        least = q.more(a, to_, result_);
+        if (least == 0) return;
+      }
+    } else {
+      const auto a = passes_.prepare(poses, clouds);
+      asked_ = &q;
+      to_ = q.space(a);
+      pass(a, poses, here, q, to_);
+    }
   }
-  typename Q::result finish() { return asked_->read(passes_.last(), to_); }
+  typename Q::result finish() {
+    if constexpr (waits)
+      return std::move(result_);
+    else
+      return read(*asked_, to_);
+  }
   /// Waits for the last frame that was enqueued, and reads what it wrote.
   typename Q::result read(const Q& q, const typename Q::out& from) { return q.read(passes_.last(), from); }
 
   void forget() const {}  // it knows nothing of the last frame
-
-  template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    if constexpr (retries) {
-      static_assert(retrying::needs<requires(const asked<On>& a, const typename Q::out& to, std::size_t n) {
-        { q.space(a, n) } -> std::same_as<typename Q::out>;
-        { q.more(a, to) } -> std::same_as<std::size_t>;
-      }>());
-      const auto& here = passes_.readable(clouds);
-      for (std::size_t least = 0;;) {  // once more, if there was not enough room
-        const auto a = passes_.prepare(poses, clouds);
-        const typename Q::out to = q.space(a, least);
-        pass(a, poses, here, q, to);
-        least = q.more(a, to);
-        if (least == 0) return q.read(a, to);
-      }
-    } else {
-      begin(poses, clouds, q);
-      return finish();
-    }
-  }
 
  private:
   template <class Clouds>
@@ -191,6 +212,7 @@ class engine {
   passes<On, PartView> passes_;
   const Q* asked_ = nullptr;
   typename Q::out to_{};
+  [[no_unique_address]] std::conditional_t<waits, typename Q::result, no_result> result_{};
 };
 
 }  // namespace clearance::pairwise

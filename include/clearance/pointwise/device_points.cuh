@@ -3,6 +3,7 @@
 // Each point's own distance on a device. It may remember the nearest primitives from frame to frame.
 
 #include <clearance/backends/device.cuh>
+#include <clearance/backends/readback.cuh>
 #include <clearance/frames/readable.cuh>
 #include <clearance/pointwise/each_point.hpp>
 #include <clearance/pointwise/engine.hpp>

@@ -3,6 +3,7 @@
 // Asks for every point's distance on one backend, frame after frame.
 
 #include <clearance/backends/kept_memory.hpp>
+#include <clearance/backends/readback.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/pointwise/host_points.hpp>
 #include <clearance/scan/scan_body.hpp>
@@ -67,15 +68,15 @@ class engine {
  public:
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), memory_(on, from...), readable_(on, from...), points_{on, model, from...} {
+      : on_(on),
+        model_(model),
+        memory_(on, from...),
+        back_(on, from...),
+        readable_(on, from...),
+        points_{on, model, from...} {
     Q::check_robot(on, model);
   }
 
-  template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    begin(poses, clouds, q);
-    return finish();
-  }
   /// Enqueues a frame whose result `finish` waits for.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
@@ -86,16 +87,16 @@ class engine {
       to_.distances.part = memory_.template space<std::uint32_t>(2 * size_).data();
       to_.distances.primitive = to_.distances.part + size_;
     }
-    certain_ = start(poses, readable_(clouds), q, to_);
+    result_.certain = start(poses, readable_(clouds), q, to_);
   }
-  typename Q::result finish() {
-    typename Q::result all;
-    all.certain = certain_;
-    if (to_.distances.part != nullptr)
-      all.part = on_.copy_out(to_.distances.part, size_), all.primitive = on_.copy_out(to_.distances.primitive, size_);
-    all.distance = on_.copy_out(to_.distances.distance, size_);
-    all.counts = on_.copy_out(to_.counts, 1)[0];
-    return all;
+  /// The result stays valid until the next call.
+  typename Q::result& finish() {
+    using backends::read_array, backends::read_value;
+    const std::size_t named = to_.distances.part == nullptr ? 0 : size_;
+    back_(read_value{result_.counts, to_.counts}, read_array{result_.distance, to_.distances.distance, size_},
+          read_array{result_.part, to_.distances.part, named},
+          read_array{result_.primitive, to_.distances.primitive, named});
+    return result_;
   }
 
   /// Enqueues a frame. On a device it waits for nothing, and allocates only for a frame of more points than any before.
@@ -116,11 +117,12 @@ class engine {
   On on_;
   model_view<PartView> model_;
   backends::kept_memory<On> memory_;
+  backends::readback<On> back_;
   frames::readable_clouds<On> readable_;
   typename points_on<On>::template kept<PartView> points_;
   typename Q::out to_{};
   std::size_t size_ = 0;
-  distance_certainty certain_;
+  typename Q::result result_;
 };
 
 }  // namespace clearance::pointwise

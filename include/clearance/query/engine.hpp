@@ -10,24 +10,22 @@ namespace clearance {
 
 /// What a `query` inherits from. It is made of a backend, a view of the robot there, and perhaps memory.
 ///
-/// Law: `run(poses, clouds, q)` waits for the result, which stays valid until the next call. `forget()` drops what is
-/// known of the last frame, which only makes the next one faster. An engine may also have `start(poses, clouds, q,
-/// out)`, which enqueues a frame; where that is asked for, it must be there.
+/// Law: `begin(poses, clouds, q)` enqueues a frame, and `finish()` waits for its result, which stays valid until the
+/// next call; `q` and the clouds' memory must stay until then. `forget()` drops what is known of the last frame, which
+/// only makes the next one faster. An engine may also have `start(poses, clouds, q, out)`, which enqueues a frame whose
+/// result goes to `out`; where that is asked for, it must be there.
 template <class E, class Q>
 concept engine_for =
     requires(E its, std::span<const Eigen::Isometry3d> poses, const placed<point_span>& clouds, const Q& q) {
-      { its.run(poses, clouds, q) } -> std::convertible_to<typename Q::result>;
+      its.begin(poses, clouds, q);
+      { its.finish() } -> std::convertible_to<typename Q::result>;
       its.forget();
     };
 
-/// An engine that need not wait: `begin(poses, clouds, q)` enqueues a frame, whose result `finish()` waits for. `q`
-/// must stay until then.
-template <class E, class Q>
-concept beginning_engine = engine_for<E, Q> && requires(E its, std::span<const Eigen::Isometry3d> poses,
-                                                        const placed<point_span>& clouds, const Q& q) {
-  its.begin(poses, clouds, q);
-  { its.finish() } -> std::convertible_to<typename Q::result>;
-};
+/// An engine whose `begin` waits, because the host decides between passes over the points. On several devices each has
+/// a thread.
+template <class E>
+concept waiting_engine = E::waits;
 
 /// An engine that takes a bound. Law: `bound_by(within)` is for the next frame alone, in which pairs farther than
 /// `within` metres need not be found.
@@ -48,10 +46,15 @@ template <class E, class Q>
 consteval bool explain_engine() {
   static_assert(
       requires(E its, std::span<const Eigen::Isometry3d> poses, const placed<point_span>& clouds, const Q& q) {
-        { its.run(poses, clouds, q) } -> std::convertible_to<typename Q::result>;
+        its.begin(poses, clouds, q);
       },
-      "an engine needs: template <class Clouds> result run(std::span<const Eigen::Isometry3d> poses, const Clouds&, "
+      "an engine needs: template <class Clouds> void begin(std::span<const Eigen::Isometry3d> poses, const Clouds&, "
       "const question&)");
+  static_assert(
+      requires(E its) {
+        { its.finish() } -> std::convertible_to<typename Q::result>;
+      },
+      "an engine needs: result finish(), or const result& finish(), for the frame that began");
   static_assert(requires(E its) { its.forget(); }, "an engine needs: void forget(), which may do nothing");
   return engine_for<E, Q>;
 }

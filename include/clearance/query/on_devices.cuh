@@ -63,14 +63,14 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
 
   /// Throws std::invalid_argument also if a cloud is in more or fewer shards than there are devices.
   template <class Clouds>
-  typename Q::result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     const std::size_t n = each_.size();
     for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d&) { check_pieces(cloud, n); });
     numbers_.count(clouds);
     detail::joined_of<Q, PartView> all(q, facts_);
     const auto piece = [&](std::size_t k) { return mapped_clouds(clouds, detail::one_piece{k, n}); };
     const auto place = [&](std::size_t k) { return numbers_.place(clouds, detail::one_piece{k, n}); };
-    if constexpr (beginning_engine<one, Q>) {
+    if constexpr (!waiting_engine<one>) {
       try {
         for (std::size_t k = 0; k < n; ++k) each_[k].begin(poses, piece(k), q);
         for (std::size_t k = 0; k < n; ++k) all.add(each_[k].finish(), place(k));
@@ -78,7 +78,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
         on_.wait_for_all();  // those that have begun read the caller's memory, and write into ours
         throw;
       }
-    } else {  // the host decides between passes, so each device has a thread
+    } else {
       std::vector<std::future<typename Q::result>> found;
       for (std::size_t k = 0; k < n; ++k)
         found.push_back(
@@ -86,8 +86,9 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
       for (auto& its : found) its.wait();
       for (std::size_t k = 0; k < n; ++k) all.add(found[k].get(), place(k));
     }
-    return all.result();
+    result_ = all.result();
   }
+  typename Q::result finish() { return *std::move(result_); }
 
   template <class... Arguments>
   void enqueue(const Arguments&...) {
@@ -120,6 +121,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
   std::span<const part_facts> facts_;
   std::deque<one> each_;
   detail::piece_numbers numbers_;
+  std::optional<typename Q::result> result_;
 };
 
 }  // namespace clearance

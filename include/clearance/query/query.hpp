@@ -131,7 +131,7 @@ std::span<const Eigen::Isometry3d> as_poses(const Poses& poses) {
   }
 }
 
-/// How every prepared question is asked. `Query` has `run(poses, clouds, question)`, and what else it can.
+/// How every prepared question is asked: by the `begin` and `finish` of `Query`, and what else it can.
 template <class Query, class On, class Q>
 class callable {
  public:
@@ -142,7 +142,11 @@ class callable {
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) & {
     static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
     const in_use::call only(used_);
-    return self().run(as_poses(poses), clouds, q);
+    self().begin(as_poses(poses), clouds, q);
+    if constexpr (std::is_reference_v<decltype(self().finish())>)
+      return static_cast<const typename Q::result&>(self().finish());
+    else
+      return self().finish();
   }
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds) & {
@@ -171,10 +175,14 @@ class callable {
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds) & {
     return (*this)(chain, joints, clouds, asked_);
   }
-  /// A temporary query takes its result with it, so this returns a copy.
+  /// A temporary query takes its memory with it, so this returns the result itself.
   template <class... Arguments>
   auto operator()(const Arguments&... arguments) && {
-    return static_cast<callable&>(*this)(arguments...);
+    decltype(auto) its = static_cast<callable&>(*this)(arguments...);
+    if constexpr (std::is_reference_v<decltype(its)>)
+      return typename Q::result(std::move(const_cast<typename Q::result&>(its)));
+    else
+      return its;
   }
   /// On a device: about the configurations that were placed.
   template <class Clouds>
@@ -333,8 +341,7 @@ template <class On, class Robot, class Poses, class Clouds, class Q>
 auto ask(const On& on, const Robot& robot, const Poses& poses, const Clouds& clouds, const Q& q) {
   if constexpr (detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>())
     return detail::one_call<On>::of(on, [&](auto... memory) {
-      query once(on, robot, q, memory...);
-      return once(poses, clouds);
+      return query(on, robot, q, memory...)(poses, clouds);
     });
 }
 template <class On, class Robot, class Poses, class S, class Pose, class Q>

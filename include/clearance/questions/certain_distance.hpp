@@ -134,7 +134,8 @@ struct uncertain_pair {
   bool bounded = true;  ///< False: the point may be anywhere.
 };
 
-/// Reads a part's pair again, as it was measured. The last thread reads the shares of the nominal answer's point.
+/// Reads a part's pair again, as it was measured. The thread after the last part's reads the shares of the nominal
+/// answer's point.
 template <class PartView, point_source Source, class Traversal>
 struct read_pair {
   const PartView* parts;
@@ -145,12 +146,15 @@ struct read_pair {
   world_transform world_from_cloud;
   std::uint32_t cloud;
   const part_minimum* minima;
+  const min_distance_result* nominal;
   Traversal walk;
   uncertain_pair* pairs;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
     if (cloud == 0) pairs[i] = {};
-    const part_minimum least = minima[i];
+    const part_minimum least =
+        i < part_count ? minima[i]
+                       : part_minimum{nominal->distance, nominal->cloud, nominal->point, nominal->primitive};
     if (least.cloud != cloud || least.point >= source.size()) return;
     const sample s = source[least.point];
     const vec3 p = s.position;
@@ -212,22 +216,38 @@ class certain_distance::engine {
         nominal_(on, model, from...),
         search_(on, model, from...),
         memory_(on, from...),
+        back_(on, from...),
         readable_(on, from...) {
     scan::walk_of(on, model);
-    nominal_.reserve(), search_.reserve();
   }
 
+  /// Enqueues three passes, none of which waits for the one before: what is measured, what is certain of each part, and
+  /// the pairs of both.
   template <class Clouds>
-  result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const certain_distance& q) {
     q.check(model_.size());
+    asked_ = &q;
+    const std::size_t parts = model_.size();
     const auto& here = readable_(clouds);
+    memory_.begin();
+    all_ = memory_.template space<min_distance_result>(2).data();
+    minima_ = memory_.template space<part_minimum>(parts).data();
+    pairs_ = memory_.template space<minimum::uncertain_pair>(parts + 1).data();
+    nominal_.start(poses, mapped_clouds(here, as_measured{}), min_distance{}, all_);
+    search_.start(poses, here, min_distance_per_part{}, {all_ + 1, minima_});
+    vague_ = read(poses, here);
+  }
+  result finish() {
+    using backends::read_array;
+    std::vector<min_distance_result> all;
+    std::vector<part_minimum> minima;
+    std::vector<minimum::uncertain_pair> pairs;
+    back_(read_array{all, all_, 2}, read_array{minima, minima_, model_.size()},
+          read_array{pairs, pairs_, model_.size() + 1});
     result r;
-    const auto measured = mapped_clouds(here, as_measured{});
-    nominal_.begin(poses, measured, min_distance{}), search_.begin(poses, here, min_distance_per_part{});
-    r.nominal = nominal_.finish();
-    const min_distance_per_part_result& certain = search_.finish();
-    r.any_radius = read(poses, here, certain.parts, r.nominal) || !q.parts.empty();
-    tell(q, certain, r);
+    r.nominal = all[0];
+    r.any_radius = vague_ || !asked_->parts.empty();
+    tell(*asked_, all[1], minima, pairs, r);
     minimum::conclude(r);
     return r;
   }
@@ -235,15 +255,10 @@ class certain_distance::engine {
   void forget() { nominal_.forget(), search_.forget(); }
 
  private:
-  /// Is there an uncertain cloud?
+  /// Reads the pairs that were found. Is there an uncertain cloud?
   template <class Clouds>
-  bool read(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, std::vector<part_minimum> minima,
-            const min_distance_result& nominal) {
+  bool read(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     const auto parts = std::uint32_t(model_.size());
-    minima.push_back({nominal.distance, nominal.cloud, nominal.point, nominal.primitive});
-    memory_.begin();
-    auto* const pairs = memory_.template space<minimum::uncertain_pair>(parts + 1).data();
-    const auto* const wanted = std::get<0>(memory_.put(minima));
     errors_.assign(parts, 0);
     const auto walk = scan::walk_of(on_, model_);
     bool vague = false;
@@ -253,24 +268,33 @@ class certain_distance::engine {
           vague = vague || vague_source<S>;
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto* const places = std::get<0>(memory_.put(frame_.places));
-          backends::for_each_apart(on_, parts + (nominal.part != none),
+          backends::for_each_apart(on_, parts + 1,
                                    minimum::read_pair<PartView, S, std::remove_const_t<decltype(walk)>>{
-                                       model_.parts, places, parts, source, frame_.origin, frame_.world_from_cloud,
-                                       now.cloud, wanted, walk, pairs});
+                                       .parts = model_.parts,
+                                       .places = places,
+                                       .part_count = parts,
+                                       .source = source,
+                                       .origin = frame_.origin,
+                                       .world_from_cloud = frame_.world_from_cloud,
+                                       .cloud = now.cloud,
+                                       .minima = minima_,
+                                       .nominal = all_,
+                                       .walk = walk,
+                                       .pairs = pairs_});
         });
-    pairs_ = on_.copy_out(pairs, parts + 1);
     return vague;
   }
 
-  void tell(const certain_distance& q, const min_distance_per_part_result& found, result& r) const {
-    r.anywhere = found.all.dropped[int(drop_reason::too_close)];
+  void tell(const certain_distance& q, const min_distance_result& all, std::span<const part_minimum> minima,
+            std::span<const minimum::uncertain_pair> pairs, result& r) const {
+    r.anywhere = all.dropped[int(drop_reason::too_close)];
     const auto radius = [&q](std::size_t k) { return q.parts.empty() ? part_radius{} : q.parts[k]; };
     for (std::size_t k = 0; k < model_.size(); ++k) {
-      const minimum::uncertain_pair& pair = pairs_[k];
+      const minimum::uncertain_pair& pair = pairs[k];
       certain_pair& part = r.parts.emplace_back();
-      if (found.parts[k].point == none) continue;
+      if (minima[k].point == none) continue;
       static_cast<part_witness&>(part) = pair.measured;
-      part.to_ball = found.parts[k].distance;
+      part.to_ball = minima[k].distance;
       const frames::float_error error{errors_[k], frame_.error.per_metre};
       const radius_shares& s = pair.shares;
       part.shares = {s.noise,
@@ -282,7 +306,7 @@ class certain_distance::engine {
                      error.at(part.to_ball)};
     }
     if (r.nominal.part == none) return;
-    const minimum::uncertain_pair& nearest = pairs_.back();
+    const minimum::uncertain_pair& nearest = pairs.back();
     const double uncertain =
         (nearest.bounded ? double(nearest.shares.sum()) : double(infinity)) + radius(r.nominal.part).sum();
     const double most = double(r.nominal.distance) + model_.facts[r.nominal.part].tolerance +
@@ -296,10 +320,17 @@ class certain_distance::engine {
   min_distance::engine<On, PartView> nominal_;
   min_distance_per_part::engine<On, PartView> search_;
   backends::kept_memory<On> memory_;
+  backends::readback<On> back_;
   frames::readable_clouds<On> readable_;
   frames::cloud_frame frame_;
   std::vector<double> errors_;
-  std::vector<minimum::uncertain_pair> pairs_;
+
+  // The frame that began: where its answers will be, and is a cloud uncertain?
+  const certain_distance* asked_ = nullptr;
+  min_distance_result* all_ = nullptr;  // as measured, and what is certain
+  part_minimum* minima_ = nullptr;
+  minimum::uncertain_pair* pairs_ = nullptr;
+  bool vague_ = false;
 };
 
 }  // namespace clearance

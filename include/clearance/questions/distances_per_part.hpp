@@ -112,8 +112,13 @@ struct distances_per_part {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    return {a.copy_out(from.distance, a.points * a.parts()), a.points, a.copy_out(from.counts, 1)[0], a.certain(),
-            a.parts()};
+    result r;
+    r.points = a.points;
+    r.parts = a.parts();
+    r.certain = a.certain();
+    a.bring(backends::read_array{r.distance, from.distance, a.points * a.parts()},
+            backends::read_value{r.counts, from.counts});
+    return r;
   }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 // How far is a robot from all points that are not its own? Two questions, one after another.
 
+#include <clearance/backends/readback.hpp>
 #include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/self_filter.hpp>
@@ -36,7 +37,11 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, const 
       query filtered(on, own, filter, memory...);
       filtered.enqueue(own_poses, here, to);
       query(on, robot, min_distance{}, memory...).enqueue(poses, masked_clouds(here, labels.data()), result.data());
-      return filtered_distance{filtered.read(filter, to), on.copy_out(result.data(), 1)[0]};
+      filtered_distance all;
+      backends::readback<On> back(on, memory...);
+      back(backends::read_value{all.rest, result.data()});  // the last work, so that all is done
+      all.filter = filtered.read(filter, to);
+      return all;
     });
   }
 }

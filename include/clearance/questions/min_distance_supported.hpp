@@ -239,7 +239,7 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
     static_assert(points_alone<S>());
     on.for_each(points.size(), place_candidates<S>{source, frame.world_from_cloud, now.first, number, place});
   });
-  const std::vector<position> at = on.copy_out(place, points.size());
+  const std::vector<position> at = a.copy_out(place, points.size());
   frames::for_each_turn(frame, facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn&) {
     std::vector<ball> balls;
     std::vector<double> all_within;
@@ -262,7 +262,7 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
     else
       on.for_each(source.size(), each);
   });
-  return on.copy_out(support, points.size());
+  return a.copy_out(support, points.size());
 }
 
 /// Is one of some points certainly inside a part that knows its inside?
@@ -285,7 +285,7 @@ bool any_inside(Passes& passes, std::span<const Eigen::Isometry3d> poses, const 
                                                 model.parts, places, std::uint32_t(model.size()), source, frame.origin,
                                                 now.first, number, inside, walk});
         });
-    const std::vector<std::uint32_t> found = passes.on.copy_out(inside, points.size());
+    const std::vector<std::uint32_t> found = a.copy_out(inside, points.size());
     return std::ranges::find(found, 1u) != found.end();
   }
   return false;
@@ -392,17 +392,20 @@ class min_distance_supported::engine {
     if constexpr (scan::has_interior<PartView>) scan::walk_of(on, model);
   }
 
+  /// What one pass finds decides what the next one asks.
+  static constexpr bool waits = true;
   template <class Clouds>
-  supported_distance run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
-                         const min_distance_supported& q) {
-    return pairwise::least_supported(passes_, known_, poses, passes_.readable(clouds), q);
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const min_distance_supported& q) {
+    result_ = pairwise::least_supported(passes_, known_, poses, passes_.readable(clouds), q);
   }
+  const supported_distance& finish() const { return result_; }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { known_ = {}; }
 
  private:
   pairwise::passes<On, PartView> passes_;
   pairwise::known_nearest known_;
+  supported_distance result_;
 };
 
 }  // namespace clearance

@@ -26,12 +26,15 @@ struct nearest_k {
     template <class... Memory>
     engine(const On& on, const model_view<PartView>& model, Memory... from) : passes_(on, model, from...) {}
 
+    /// What one pass finds decides what the next one asks.
+    static constexpr bool waits = true;
     template <class Clouds>
-    result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const nearest_k& q) {
+    void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const nearest_k& q) {
       q.check();
-      return pairwise::list_nearest(passes_, known_, poses, passes_.readable(clouds), q.k,
-                                    frames::largest_within(q.d_max));
+      result_ = pairwise::list_nearest(passes_, known_, poses, passes_.readable(clouds), q.k,
+                                       frames::largest_within(q.d_max));
     }
+    result finish() { return std::move(result_); }
     template <class Clouds>
     distance_certainty start(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const nearest_k& q,
                              const out& to) {
@@ -65,6 +68,7 @@ struct nearest_k {
    private:
     pairwise::passes<On, PartView> passes_;
     pairwise::known_nearest known_;
+    result result_;
   };
 
   void check() const {

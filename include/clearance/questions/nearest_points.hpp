@@ -247,8 +247,9 @@ within_result list_within(Passes& passes, std::span<const Eigen::Isometry3d> pos
     const auto a = passes.prepare(poses, clouds);
     const within::out to = question.space(a, least);
     passes.enqueue(poses, clouds, question.prepare(a, to), to.counts);
-    least = question.more(a, to);
-    if (least == 0) return question.read(a, to);
+    within_result found;
+    least = question.more(a, to, found);
+    if (least == 0) return found;
   }
 }
 
@@ -306,8 +307,10 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
     std::uint32_t* const counts = passes.memory.template space<std::uint32_t>(parts * nearest_bins::bins).data();
     on.for_each(parts * nearest_bins::bins, zero_words{counts});
     const auto [there] = passes.memory.put(windows);
-    passes.count(poses, clouds, nearest_bins{counts, there, shift});
-    const std::vector<std::uint32_t> all = on.copy_out(counts, parts * nearest_bins::bins);
+    passes.enqueue(poses, clouds, nearest_bins{counts, there, shift},
+                   passes.memory.template space<point_counts>(1).data());
+    std::vector<std::uint32_t> all;
+    passes.back(backends::read_array<std::uint32_t>{all, counts, parts * nearest_bins::bins});
     std::size_t listed = 0;
     for (std::size_t p = 0; p < parts; ++p) {
       if (windows[p].wanted == 0) {

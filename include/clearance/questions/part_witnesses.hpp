@@ -71,19 +71,23 @@ class part_witnesses::engine {
   /// Throws std::invalid_argument if a tree is too deep for `near_first` on a device, or for the traversal of `plain`.
   template <class... Memory>
   engine(const On& on, const model_view<PartView>& model, Memory... from)
-      : on_(on), model_(model), memory_(on, from...), readable_(on, from...) {
+      : on_(on), model_(model), memory_(on, from...), back_(on, from...), readable_(on, from...) {
     scan::walk_of(on, model);
   }
 
   template <class Clouds>
-  result run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses& q) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_witnesses& q) {
     frames::check_room(model_.size(), q.minima.size());
+    asked_ = &q;
     memory_.begin();
-    part_witness* const found = memory_.template space<part_witness>(q.minima.size()).data();
-    evaluate_all(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found);
-    auto all = on_.copy_out(found, q.minima.size());
+    found_ = memory_.template space<part_witness>(q.minima.size()).data();
+    evaluate_all(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found_);
+  }
+  result finish() {
+    result all;
+    back_(backends::read_array{all, found_, asked_->minima.size()});
     for (std::size_t k = 0; k < all.size(); ++k)
-      if (q.minima[k].cloud != none && all[k].part == none)
+      if (asked_->minima[k].cloud != none && all[k].part == none)
         throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) +
                                     " is not one of these poses and clouds");
     return all;
@@ -114,8 +118,11 @@ class part_witnesses::engine {
   On on_;
   model_view<PartView> model_;
   backends::kept_memory<On> memory_;
+  backends::readback<On> back_;
   frames::readable_clouds<On> readable_;
   frames::cloud_frame frame_;
+  const part_witnesses* asked_ = nullptr;
+  part_witness* found_ = nullptr;
 };
 
 }  // namespace clearance

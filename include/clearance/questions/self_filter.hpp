@@ -223,8 +223,7 @@ struct self_filter {
   template <class Asked>
   result read(const Asked& a, const out& from) const {
     result all;
-    all.labels = a.copy_out(from.labels, a.points);
-    all.counts = a.copy_out(from.counts, 1)[0];
+    a.bring(backends::read_array{all.labels, from.labels, a.points}, backends::read_value{all.counts, from.counts});
     all.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
     all.offsets.push_back(a.points);
     pairwise::list_rest(all);

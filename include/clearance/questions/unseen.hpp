@@ -3,6 +3,7 @@
 // How far is a robot from what no camera sees?
 
 #include <clearance/backends/kept_memory.hpp>
+#include <clearance/backends/readback.hpp>
 #include <clearance/ground/borrowed.hpp>
 #include <clearance/minimum/merge.hpp>
 #include <clearance/points/depth_image.hpp>
@@ -52,14 +53,27 @@ namespace minimum {
 
 /// What one camera says about each part. It is kept from frame to frame.
 struct camera_finding {
-  min_distance_result all;
-  std::vector<part_witness> nearest;
-  std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
+  // What is known before the search ends.
+  std::vector<frames::float_error> errors;  ///< Of each part's distance.
+  frames::float_error error;                ///< Of all of them.
   std::vector<double> from_edge;
   std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
   bool tells_shown, vague;
+  bool shadow;  ///< Is its own shadow asked about?
 
-  void clear() { nearest.clear(), lower.clear(), own.clear(), from_edge.clear(), shown.clear(); }
+  // What the search has found.
+  min_distance_result all;
+  std::vector<part_witness> nearest;
+  std::vector<double> lower, own;  ///< How far at least all is that it hides, and its own shadow.
+
+  void clear() {
+    errors.clear();
+    from_edge.clear();
+    shown.clear();
+    nearest.clear();
+    lower.clear();
+    own.clear();
+  }
 };
 
 /// A place is unseen only if no camera sees it. So what camera j hides near a part is also hidden by every other
@@ -244,38 +258,56 @@ class unseen::engine {
   engine(const On& on, const model_view<PartView>& model, Memory... from)
       : model_(model),
         memory_(on, from...),
+        back_(on, from...),
+        readable_(on, from...),
         witnesses_(on, model, from...),
         make_([on, model, from...] { return search(on, model, from...); }) {}
 
-  /// The result stays valid until the next call.
+  /// Enqueues all cameras' searches.
   template <class Clouds>
-  const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
+  void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const unseen& q) {
     q.check(model_.size());
+    asked_ = &q;
     used_ = 0;
-    result& r = result_;
-    r.all = {}, r.own_shadow = {}, r.parts.clear();
+    memory_.begin();
     const point_label* labels = nullptr;
     if (!q.labels.empty()) {
       detail::check_labels(q.labels, clouds);
-      memory_.begin();
       labels = std::get<0>(memory_.put(q.labels));
     }
-    std::uint32_t number = 0;
-    const bool places = q.places || count_clouds(clouds) > 1;  // the least of several cameras may be any part's
-    for_each_cloud(clouds, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
+    const auto& here = readable_(clouds);
+    const std::size_t cameras = count_clouds(here), parts = model_.size();
+    shadows_ = labels != nullptr || any_masked(here);
+    places_ = q.places || cameras > 1;  // the least of several cameras may be any part's
+    const std::size_t searches = shadows_ ? 2 * cameras : cameras;
+    all_ = memory_.template space<min_distance_result>(searches).data();
+    minima_ = memory_.template space<part_minimum>(searches * parts).data();
+    if (places_) nearest_ = memory_.template space<part_witness>(cameras * parts).data();
+    for_each_cloud(here, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
       const auto image = as_measured{}(given);
       if constexpr (seeing_image<decltype(as_measured{}(given))>) {
-        ask_camera(poses, given, image, pose, labels, q, number++, places, r);
+        begin_camera(poses, given, image, pose, labels, cameras);
         if (labels != nullptr) labels += image.size();
       } else if constexpr (detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>) {
         if (labels != nullptr)
-          throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
-        ask_camera(poses, given, image.source, pose, image.labels, q, number++, places, r);
+          throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(used_));
+        begin_camera(poses, given, image.source, pose, image.labels, cameras);
       } else {
-        refuse<Clouds, S>(number);
+        refuse<Clouds, S>(std::uint32_t(used_));
       }
     });
-    minimum::join(std::span<const camera>(cameras_).first(used_), q.room.farthest, q.radii, q.edges, model_.size(), r);
+  }
+  /// The result stays valid until the next call.
+  result& finish() {
+    using backends::read_array;
+    const std::size_t parts = model_.size(), searches = shadows_ ? 2 * used_ : used_;
+    back_(read_array{found_, all_, searches}, read_array{found_minima_, minima_, searches * parts},
+          read_array{found_nearest_, nearest_, places_ ? used_ * parts : 0});
+    result& r = result_;
+    r.all = {}, r.own_shadow = {}, r.parts.clear();
+    for (std::size_t number = 0; number < used_; ++number) finish_camera(number, r);
+    minimum::join(std::span<const camera>(cameras_).first(used_), asked_->room.farthest, asked_->radii, asked_->edges,
+                  parts, r);
     return r;
   }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
@@ -286,11 +318,18 @@ class unseen::engine {
  private:
   using asks = min_distance_per_part;
   using search = minimum::engine<On, PartView, asks>;
-
   using camera = minimum::camera_finding;
 
-  part_facts facts_of(std::size_t k, const unseen& q) const { return widened(model_.facts[k], radius_of(q.radii, k)); }
+  part_facts facts_of(std::size_t k) const { return widened(model_.facts[k], radius_of(asked_->radii, k)); }
 
+  template <class Clouds>
+  static bool any_masked(const Clouds& clouds) {
+    bool any = false;
+    for_each_cloud(clouds, [&](const auto& given, const Eigen::Isometry3d&) {
+      any = any || detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>;
+    });
+    return any;
+  }
   template <class Clouds, class S>
   [[noreturn]] static void refuse(std::uint32_t number) {
     static_assert(detail::clouds_of_variants<Clouds>,
@@ -299,12 +338,13 @@ class unseen::engine {
                                 " is none");
   }
 
-  /// `labels`: of this image, or null.
+  /// `labels`: of this image, or null. Its searches write their results behind those of the cameras before it, and
+  /// those of shadows behind all `cameras`.
   template <class Given, seeing_image S>
-  void ask_camera(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image,
-                  const Eigen::Isometry3d& pose, const point_label* labels, const unseen& q, std::uint32_t number,
-                  bool places, result& r) {
+  void begin_camera(std::span<const Eigen::Isometry3d> poses, const Given& given, const S& image,
+                    const Eigen::Isometry3d& pose, const point_label* labels, std::size_t cameras) {
     constexpr bool pinhole = requires(const S& s) { s.inverse_fx; };
+    const unseen& q = *asked_;
     double half = q.half_pixel;
     if constexpr (pinhole) half = std::hypot(double(image.inverse_fx), double(image.inverse_fy)) / 2;
     if (image.size() != 0 && !(half > 0 && half < infinity))
@@ -318,77 +358,110 @@ class unseen::engine {
     const auto hides = [&](bool own) {
       return detail::as_uncertain(given, hidden<S>{image, q.room, rounded_up(half), labels, own});
     };
+    const std::size_t number = used_++, parts = model_.size();
     const auto room = hides(false);
-    if (used_ == cameras_.size()) cameras_.emplace_back();
-    camera& c = cameras_[used_];
+    start(2 * number, poses, room, pose, number);
+    if (places_)
+      witnesses_.start(poses, placed{room, pose}, part_witnesses{},
+                       {minima_ + number * parts, nearest_ + number * parts});
+    if (labels != nullptr) start(2 * number + 1, poses, hides(true), pose, cameras + number);
+
+    frame_.start(model_.facts, poses);
+    frame_.put(model_.facts, pose, 0, rounding_of(room));
+    if (used_ > cameras_.size()) cameras_.emplace_back();
+    camera& c = cameras_[number];
     c.clear();
-    const auto& found = ask_of(2 * number, poses, room, pose);
-    c.all = found.all;
-    if (places)
-      c.nearest = witnesses_.run(poses, placed{room, pose}, part_witnesses{found.parts});
-    else
-      for (std::uint32_t k = 0; k < model_.size(); ++k)
-        if (const part_minimum& its = found.parts[k]; its.cloud != none)
-          c.nearest.push_back({its.distance, k, its.cloud, its.point, its.primitive});
-        else
-          c.nearest.push_back({});
-    frame_.start(model_.facts, poses), frame_.put(model_.facts, pose, 0, rounding_of(room));
-    const auto lower = [&](std::size_t k, const min_distance_per_part_result& of) {
-      if (of.all.dropped[int(drop_reason::too_close)] != 0) return -double(infinity);  // an unbounded radius
-      if (of.parts[k].cloud == none) return double(infinity);
-      return frames::certain_distance(of.parts[k].distance, frames::slop(facts_of(k, q)),
-                                      {frame_.places[k].error, frame_.error.per_metre});
-    };
-    const auto widen = [&](min_distance_result& of, const std::vector<double>& lowers) {
-      if (q.radii.empty() || of.part == none) return;
-      frames::bracket(of, std::ranges::min(lowers), facts_of(of.part, q).tolerance, false, frame_.error);
-      frames::allow_for_too_close(of);
-    };
-    c.own.assign(model_.size(), infinity), c.tells_shown = pinhole;
+    c.error = frame_.error;
+    c.tells_shown = pinhole;
     c.vague = vague_source<Given>;
-    for (std::size_t k = 0; k < model_.size(); ++k) {
-      c.lower.push_back(lower(k, found));
-      c.nearest[k].cloud = c.nearest[k].part == none ? none : number;
-      c.from_edge.push_back(0), c.shown.push_back(0);
+    c.shadow = labels != nullptr;
+    for (std::size_t k = 0; k < parts; ++k) {
+      c.errors.push_back({frame_.places[k].error, frame_.error.per_metre});
+      c.from_edge.push_back(0);
+      c.shown.push_back(0);
       if constexpr (pinhole) {
         const pinhole_view view(image, q.room.nearest, q.room.farthest);
         const ball& around = frame_.places[k].around;
         const vec3 middle = around.center + frame_.origin;
-        double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(facts_of(k, q));
+        double& edge = c.from_edge.back() = view.from_edge({middle, around.radius}) - frames::slop(facts_of(k));
         if constexpr (vague_source<Given>)  // the view may be turned and shifted, and what was outside has moved in
           edge = fma(-double(given.turn), double(length(middle)) + around.radius, edge - given.shift - given.drift) /
                  (1 + double(given.turn));
         c.shown.back() = view.shows_of_ball(model_.facts[k].center, model_.facts[k].radius, pose.inverse() * poses[k]);
       }
     }
-    widen(c.all, c.lower);
-    if (labels != nullptr) {
-      const auto& each = ask_of(2 * number + 1, poses, hides(true), pose);
-      for (std::size_t k = 0; k < model_.size(); ++k) c.own[k] = lower(k, each);
-      min_distance_result own = each.all;
-      widen(own, c.own);
-      if (own.cloud != none) own.cloud = number;
-      if (c.vague) own.upper = infinity;
-      r.own_shadow = merge(r.own_shadow, own);
-    }
-    ++used_;
   }
 
+  /// Enqueues the search with this number about hidden room. Its results are the `place`-th.
   template <class S>
-  decltype(auto) ask_of(std::size_t slot, std::span<const Eigen::Isometry3d> poses, const S& room,
-                        const Eigen::Isometry3d& pose) {
-    while (searches_.size() <= slot) searches_.push_back(make_());
-    return searches_[slot].run(poses, placed<S>{room, pose}, asks{});
+  void start(std::size_t number, std::span<const Eigen::Isometry3d> poses, const S& room, const Eigen::Isometry3d& pose,
+             std::size_t place) {
+    while (searches_.size() <= number) searches_.push_back(make_());
+    searches_[number].start(poses, placed<S>{room, pose}, asks{}, {all_ + place, minima_ + place * model_.size()});
+  }
+
+  void finish_camera(std::size_t number, result& r) {
+    const std::size_t parts = model_.size();
+    camera& c = cameras_[number];
+    const auto minima_of = [&](std::size_t place) {
+      return std::span<const part_minimum>(found_minima_).subspan(place * parts, parts);
+    };
+    const auto lower = [&](std::size_t k, std::size_t place) {
+      if (found_[place].dropped[int(drop_reason::too_close)] != 0) return -double(infinity);  // an unbounded radius
+      const part_minimum& least = minima_of(place)[k];
+      if (least.cloud == none) return double(infinity);
+      return frames::certain_distance(least.distance, frames::slop(facts_of(k)), c.errors[k]);
+    };
+    const auto widen = [&](min_distance_result& of, const std::vector<double>& lowers) {
+      if (asked_->radii.empty() || of.part == none) return;
+      frames::bracket(of, std::ranges::min(lowers), facts_of(of.part).tolerance, false, c.error);
+      frames::allow_for_too_close(of);
+    };
+    c.all = found_[number];
+    c.own.assign(parts, infinity);
+    for (std::uint32_t k = 0; k < parts; ++k) {
+      const part_minimum& least = minima_of(number)[k];
+      part_witness nearest;
+      if (places_)
+        nearest = found_nearest_[number * parts + k];
+      else if (least.cloud != none)
+        nearest = {least.distance, k, least.cloud, least.point, least.primitive};
+      nearest.cloud = nearest.part == none ? none : std::uint32_t(number);
+      c.nearest.push_back(nearest);
+      c.lower.push_back(lower(k, number));
+    }
+    widen(c.all, c.lower);
+    if (!c.shadow) return;
+    const std::size_t place = used_ + number;
+    for (std::size_t k = 0; k < parts; ++k) c.own[k] = lower(k, place);
+    min_distance_result own = found_[place];
+    widen(own, c.own);
+    if (own.cloud != none) own.cloud = std::uint32_t(number);
+    if (c.vague) own.upper = infinity;
+    r.own_shadow = merge(r.own_shadow, own);
   }
 
   model_view<PartView> model_;
   backends::kept_memory<On> memory_;
+  backends::readback<On> back_;
+  frames::readable_clouds<On> readable_;
   part_witnesses::engine<On, PartView> witnesses_;
   std::function<search()> make_;
   std::deque<search> searches_;  // one for each camera, and one for its own shadow
   std::vector<camera> cameras_;  // of which this frame has the first `used_`
   std::size_t used_ = 0;
   frames::cloud_frame frame_;
+
+  // The frame that began: does it ask for shadows and for witnesses, and where are the answers?
+  const unseen* asked_ = nullptr;
+  bool shadows_ = false, places_ = false;
+  min_distance_result* all_ = nullptr;
+  part_minimum* minima_ = nullptr;
+  part_witness* nearest_ = nullptr;
+
+  std::vector<min_distance_result> found_;
+  std::vector<part_minimum> found_minima_;
+  std::vector<part_witness> found_nearest_;
   result result_;
 };
 

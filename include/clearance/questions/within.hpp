@@ -87,20 +87,24 @@ struct within {
     a.on.stage(std::span(&nothing, 1), to.count);
     return {to.pairs, to.count, to.capacity, reaches};
   }
-  /// How much room it takes, or 0 if there was enough.
+  /// Reads the result, or says how much room it takes if there was not enough.
   template <class Asked>
-  std::size_t more(const Asked& a, const out& from) const {
-    const auto found = std::size_t(a.copy_out(from.count, 1)[0]);
-    return found > from.capacity ? found : 0;
+  std::size_t more(const Asked& a, const out& from, result& r) const {
+    unsigned long long found = 0;
+    a.bring(backends::read_value{found, from.count},
+            backends::read_array{r.pairs, from.pairs, from.capacity, from.count},
+            backends::read_value{r.counts, from.counts});
+    if (found > from.capacity) return std::size_t(found);
+    r.certain = a.certain();
+    pairwise::put_in_order(r, a.parts());
+    return 0;
   }
+  /// Those that there was room for.
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result all{{},
-               a.copy_out(from.pairs, std::size_t(a.copy_out(from.count, 1)[0])),
-               a.copy_out(from.counts, 1)[0],
-               a.certain()};
-    pairwise::put_in_order(all, a.parts());
-    return all;
+    result r;
+    more(a, from, r);
+    return r;
   }
 
   /// No farther point of a part matters.

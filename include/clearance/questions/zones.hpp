@@ -222,8 +222,12 @@ struct zones {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    const std::size_t each = per_part(a.parts());
-    return {each, min_points, a.copy_out(from.zones, a.parts() * each), a.copy_out(from.counts, 1)[0]};
+    result r;
+    r.per_part = per_part(a.parts());
+    r.min_points = min_points;
+    a.bring(backends::read_array{r.zones, from.zones, a.parts() * r.per_part},
+            backends::read_value{r.counts, from.counts});
+    return r;
   }
 
   /// No farther point of a part matters.
