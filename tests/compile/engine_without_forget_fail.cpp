@@ -11,9 +11,8 @@ struct remembering {
   struct engine {
     engine(const On&, const clearance::model_view<PartView>&) {}
     template <class Clouds>
-    int run(std::span<const Eigen::Isometry3d>, const Clouds&, const remembering&) {
-      return 0;
-    }
+    void begin(std::span<const Eigen::Isometry3d>, const Clouds&, const remembering&) {}
+    int finish() { return 0; }
   };
 };
 

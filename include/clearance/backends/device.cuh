@@ -9,16 +9,57 @@
 #include <clearance/ground/indices.hpp>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace clearance {
 
+// Kernels that start while the one before them in their stream still runs: programmatic dependent launch.
+
+/// Lets the next kernel of the stream start, if it may start early: as soon as all blocks have called this.
+__device__ inline void let_next_start() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.launch_dependents;" ::: "memory");
+#endif
+}
+
+/// Waits until all that is in the stream before this kernel has ended. Its writes are seen then. Code for devices
+/// before Hopper does not wait, and such a kernel is not launched early.
+__device__ inline void wait_for_stream() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.wait;" ::: "memory");
+#endif
+}
+
+/// A kernel that is launched early begins with both. What it could do before it waits is not worth it: the first reads
+/// of a frame that comes alone would begin later.
+__device__ inline void start_early() {
+  let_next_start();
+  wait_for_stream();
+}
+
 namespace detail {
+
+/// Is the code of a kernel that the current device has loaded new enough to wait for its stream? The driver is asked
+/// once for each kernel, because its answer takes longer than a launch.
+inline bool waits_for_stream(const void* kernel, int device) {
+  static std::mutex one_at_a_time;
+  static std::map<std::pair<const void*, int>, bool> known;
+  const std::lock_guard lock(one_at_a_time);
+  const auto found = known.find({kernel, device});
+  if (found != known.end()) return found->second;
+  cudaFuncAttributes of{};
+  check_cuda(cudaFuncGetAttributes(&of, kernel), "cudaFuncGetAttributes");
+  return known[{kernel, device}] = of.ptxVersion >= 90 && of.binaryVersion >= 90;
+}
 
 template <class F>
 __global__ void __launch_bounds__(128) ranges_kernel(std::size_t n, F body) {
+  start_early();
   const std::size_t first = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x;
   if (first < n) body(indices{first, n, std::size_t(gridDim.x) * blockDim.x});
 }
@@ -44,6 +85,7 @@ struct argument_bytes {
 
 template <class T>
 __global__ void stage_kernel(std::byte* to, unsigned count, const __grid_constant__ T from) {
+  start_early();
   for (unsigned i = threadIdx.x; i < count; i += blockDim.x) to[i] = from.bytes[i];
 }
 
@@ -69,12 +111,14 @@ struct device {
     kernel<<<blocks, threads, shared, stream>>>(arguments...);
     check_cuda(cudaGetLastError(), "kernel launch");
   }
-  /// The same for a kernel that may start while what is in the stream before it still runs: all its threads call
-  /// `wait_for_stream` before they touch what others read or write.
+  /// The same for a kernel that may start while what is in the stream before it still runs, where the device can do
+  /// that: all its threads call `wait_for_stream` before they touch what others read or write.
   template <class... P, class... A>
   void launch_early(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared,
                     const A&... arguments) const {
     const device_guard guard(id);
+    if (!detail::waits_for_stream(reinterpret_cast<const void*>(kernel), id))
+      return launch(kernel, blocks, threads, shared, arguments...);
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization, early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t how{};
@@ -94,7 +138,7 @@ struct device {
     int processors = 0;
     check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, id), "cudaDeviceGetAttribute");
     const auto blocks = std::min<std::size_t>((n + threads - 1) / threads, std::size_t(processors) * 32);
-    launch(detail::ranges_kernel<F>, unsigned(blocks), threads, 0, n, body);
+    launch_early(detail::ranges_kernel<F>, unsigned(blocks), threads, 0, n, body);
   }
 
   template <class F>
@@ -165,8 +209,8 @@ struct device {
       detail::argument_bytes chunk;
       const std::size_t n = std::min(bytes.size() - at, detail::argument_bytes::capacity);
       std::copy_n(bytes.data() + at, n, chunk.bytes);
-      launch(detail::stage_kernel<detail::argument_bytes>, 1, 256, 0, reinterpret_cast<std::byte*>(to) + at,
-             unsigned(n), chunk);
+      launch_early(detail::stage_kernel<detail::argument_bytes>, 1, 256, 0, reinterpret_cast<std::byte*>(to) + at,
+                   unsigned(n), chunk);
     }
   }
 
@@ -222,25 +266,16 @@ namespace clearance {
 /// where they are launched.
 class raised_limits {
  public:
-  /// Raises the limit on the current device, unless that was done. Returns whether the code that this device has loaded
-  /// is new enough to wait for its stream.
-  bool raise(const void* kernel, std::size_t bytes) {
-    for (const raised& its : kernels_)
-      if (its.kernel == kernel) return its.waits;
+  /// Raises the limit on the current device, unless that was done.
+  void raise(const void* kernel, std::size_t bytes) {
+    if (std::ranges::find(kernels_, kernel) != kernels_.end()) return;
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, int(bytes)),
                "cudaFuncSetAttribute");
-    cudaFuncAttributes of{};
-    check_cuda(cudaFuncGetAttributes(&of, kernel), "cudaFuncGetAttributes");
-    kernels_.push_back({kernel, of.ptxVersion >= 90 && of.binaryVersion >= 90});
-    return kernels_.back().waits;
+    kernels_.push_back(kernel);
   }
 
  private:
-  struct raised {
-    const void* kernel;
-    bool waits;
-  };
-  std::vector<raised> kernels_;
+  std::vector<const void*> kernels_;
 };
 
 }  // namespace clearance

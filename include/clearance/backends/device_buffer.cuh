@@ -4,7 +4,6 @@
 
 #include <clearance/backends/cuda_error.cuh>
 
-#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -112,35 +111,47 @@ class pinned_buffer : public backends::owned_buffer<T, backends::pinned_memory> 
   using backends::owned_buffer<T, backends::pinned_memory>::owned_buffer;
 };
 
-/// Pinned memory for any device. It keeps pieces that are given back, because the driver takes 0.2 ms for each, and more
-/// for large ones. Give a piece back only when no device will write to it any more. It lives as long as the process.
-inline std::pmr::memory_resource* kept_pinned() {
-  class kept_pieces : public std::pmr::memory_resource {
-    static constexpr std::size_t least = 4 << 10, most_kept = 64 << 20;
+namespace backends {
 
-    void* do_allocate(std::size_t bytes, std::size_t) override {
-      const std::size_t size = std::bit_ceil(std::max(bytes, least));
-      if (const std::lock_guard lock(one_at_a_time_); auto& kept = kept_[size]; !kept.empty()) {
+/// Keeps pieces of pinned memory that are given back, by their sizes, which are powers of two.
+class kept_pieces : public std::pmr::memory_resource {
+  static constexpr std::size_t least = 4 << 10, most_kept = 64 << 20;
+
+  static std::size_t size_for(std::size_t bytes) { return bytes <= least ? least : std::bit_ceil(bytes); }
+
+  void* do_allocate(std::size_t bytes, std::size_t) override {
+    const std::size_t size = size_for(bytes);
+    {
+      const std::lock_guard lock(one_at_a_time_);
+      if (auto& kept = kept_[size]; !kept.empty()) {
         void* const memory = kept.back();
         kept.pop_back();
         return memory;
       }
-      void* memory = nullptr;
-      check_cuda(backends::pinned_memory::allocate(&memory, size), backends::pinned_memory::call);
-      return memory;
     }
-    void do_deallocate(void* memory, std::size_t bytes, std::size_t) override {
-      const std::size_t size = std::bit_ceil(std::max(bytes, least));
-      if (size > most_kept) return backends::pinned_memory::free(memory);
-      const std::lock_guard lock(one_at_a_time_);
-      kept_[size].push_back(memory);
-    }
-    bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
+    void* memory = nullptr;
+    check_cuda(pinned_memory::allocate(&memory, size), pinned_memory::call);
+    return memory;
+  }
+  void do_deallocate(void* memory, std::size_t bytes, std::size_t) override {
+    const std::size_t size = size_for(bytes);
+    if (size > most_kept) return pinned_memory::free(memory);
+    const std::lock_guard lock(one_at_a_time_);
+    kept_[size].push_back(memory);
+  }
+  bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override { return this == &other; }
 
-    std::mutex one_at_a_time_;
-    std::map<std::size_t, std::vector<void*>> kept_;  ///< By size, which is a power of two.
-  };
-  static std::pmr::memory_resource* const kept = new kept_pieces;
+  std::mutex one_at_a_time_;
+  std::map<std::size_t, std::vector<void*>> kept_;
+};
+
+}  // namespace backends
+
+/// Pinned memory for any device. It keeps pieces that are given back, because the driver takes 0.2 ms for each, and
+/// more for large ones. Give a piece back only when no device will write to it any more. It lives as long as the
+/// process.
+inline std::pmr::memory_resource* kept_pinned() {
+  static std::pmr::memory_resource* const kept = new backends::kept_pieces;
   return kept;
 }
 

@@ -93,11 +93,8 @@ class readback<device> {
     static_assert(std::is_trivially_copyable_v<value> && alignof(value) <= alignof(memory_unit));
     const std::size_t begin = bytes;
     const auto put = [&](const void* from, std::size_t its_bytes, const unsigned long long* count, std::size_t each) {
-      list.pieces[list.size++] = {.from = static_cast<const std::byte*>(from),
-                                  .to = nullptr,
-                                  .bytes = its_bytes,
-                                  .count = count,
-                                  .each = each};
+      list.pieces[list.size++] = {
+          .from = static_cast<const std::byte*>(from), .to = nullptr, .bytes = its_bytes, .count = count, .each = each};
       bytes += (its_bytes + sizeof(memory_unit) - 1) / sizeof(memory_unit) * sizeof(memory_unit);
     };
     if (read.count != nullptr) put(read.count, sizeof *read.count, nullptr, 1);
@@ -112,7 +109,7 @@ class readback<device> {
       std::fill_n(words(), most_blocks, 0u);
       number_ = 0;
     }
-    std::byte* to = box_.data()->bytes + most_blocks * sizeof(std::uint32_t);
+    std::byte* to = bytes_of_box() + most_blocks * sizeof(std::uint32_t);
     for (std::uint32_t k = 0; k < list.size; ++k) {
       list.pieces[k].to = to;
       to += (list.pieces[k].bytes + sizeof(memory_unit) - 1) / sizeof(memory_unit) * sizeof(memory_unit);
@@ -120,12 +117,7 @@ class readback<device> {
     list.number = ++number_;
     list.done = words();
     const auto blocks = unsigned(std::clamp<std::size_t>(bytes / of_block, 1, most_blocks));
-    const auto kernel = readback_kernel<read_list>;
-    const device_guard guard(on_.id);
-    if (limits_.raise(reinterpret_cast<const void*>(kernel), 0))
-      on_.launch_early(kernel, blocks, 256, 0, list);
-    else
-      on_.launch(kernel, blocks, 256, 0, list);
+    on_.launch_early(readback_kernel<read_list>, blocks, 256, 0, list);
     for (unsigned b = 0; b < blocks; ++b) watch(on_, words()[b], number_);
   }
 
@@ -137,13 +129,13 @@ class readback<device> {
     std::size_t n = read.size;
     if (read.count != nullptr) {
       n = std::size_t(
-          std::min<unsigned long long>(n, *reinterpret_cast<const unsigned long long*>(box_.data()->bytes + place)));
+          std::min<unsigned long long>(n, *reinterpret_cast<const unsigned long long*>(bytes_of_box() + place)));
       place += sizeof(memory_unit);
     }
     if (n == 0) {
       read.take(nullptr, 0);
     } else if (n <= room) {
-      read.take(reinterpret_cast<const value*>(box_.data()->bytes + place), n);
+      read.take(reinterpret_cast<const value*>(bytes_of_box() + place), n);
     } else {
       const std::vector<value> values = on_.copy_out(read.from, n);
       read.take(values.data(), n);
@@ -152,10 +144,10 @@ class readback<device> {
     return 0;
   }
 
+  std::byte* bytes_of_box() const { return reinterpret_cast<std::byte*>(box_.data()); }
   std::uint32_t* words() const { return reinterpret_cast<std::uint32_t*>(box_.data()); }
 
   device on_;
-  raised_limits limits_;
   pinned_buffer<memory_unit> box_;  ///< The blocks' words, then what they copy.
   std::uint32_t number_ = 0;
   std::size_t expected_ = 4096;  ///< So many values of an array with a count come without being asked for again.

@@ -53,8 +53,7 @@ consteval bool explain_engine() {
   static_assert(
       requires(E its) {
         { its.finish() } -> std::convertible_to<typename Q::result>;
-      },
-      "an engine needs: result finish(), or const result& finish(), for the frame that began");
+      }, "an engine needs: result finish(), or const result& finish(), for the frame that began");
   static_assert(requires(E its) { its.forget(); }, "an engine needs: void forget(), which may do nothing");
   return engine_for<E, Q>;
 }

@@ -340,9 +340,7 @@ query(const On&, const Robot&, const Q&, Memory...) -> query<Q, On, typename det
 template <class On, class Robot, class Poses, class Clouds, class Q>
 auto ask(const On& on, const Robot& robot, const Poses& poses, const Clouds& clouds, const Q& q) {
   if constexpr (detail::explain_asked<On, Robot, Q>() && explain_given<Clouds>())
-    return detail::one_call<On>::of(on, [&](auto... memory) {
-      return query(on, robot, q, memory...)(poses, clouds);
-    });
+    return detail::one_call<On>::of(on, [&](auto... memory) { return query(on, robot, q, memory...)(poses, clouds); });
 }
 template <class On, class Robot, class Poses, class S, class Pose, class Q>
 auto ask(const On& on, const Robot& robot, const Poses& poses, const S& source, const Pose& pose, const Q& q) {

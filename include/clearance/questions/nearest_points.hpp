@@ -253,10 +253,23 @@ within_result list_within(Passes& passes, std::span<const Eigen::Isometry3d> pos
   }
 }
 
+/// The same, unless there are more than `most`: then nothing is listed, and it returns false.
+template <class Passes, class Clouds>
+bool list_few_within(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
+                     const std::vector<real>& radii, std::size_t most, within_result& near) {
+  const within question{{radii.begin(), radii.end()}};
+  const auto a = passes.prepare(poses, clouds);
+  within::out to = question.space(a);
+  to.capacity = std::min(to.capacity, most);
+  passes.enqueue(poses, clouds, question.prepare(a, to), to.counts);
+  return question.more(a, to, near) == 0;
+}
+
 /// What the last frame says about the next: how near the k nearest may still be. It is only a first bound; if fewer
 /// points are so near, everything is asked again.
 struct known_nearest {
   std::size_t k = 0;
+  bool crowded = false;           ///< So many points were as near that they were counted before some were listed.
   std::vector<real> last, radii;  ///< One per part: how near the last of k was, and a bound for the next frame.
 
   /// Bounds for at most k points.
@@ -274,9 +287,19 @@ struct known_nearest {
       const bool moved = k == found.per_part && now[p] < infinity && last[p] < infinity;
       next.push_back(now[p] + (moved ? 2 * std::abs(now[p] - last[p]) + 0.005f : std::abs(now[p]) / 10 + 0.02f));
     }
-    last = std::move(now), radii = std::move(next), k = found.per_part;
+    crowded = crowded && k == found.per_part;
+    last = std::move(now);
+    radii = std::move(next);
+    k = found.per_part;
   }
 };
+
+/// So many pairs are listed without being counted first. A device passes over all points while a host copies and sorts
+/// some thousand pairs.
+template <class On>
+std::size_t few_pairs(std::size_t k, std::size_t parts) {
+  return 4 * k * parts + (pairs_on<On>::meets_points ? 1 << 11 : 1 << 16);
+}
 
 /// First bounds, if no frame before is known.
 template <class Passes, class Clouds>
@@ -294,9 +317,7 @@ template <class Passes, class Clouds>
 std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isometry3d> poses, const Clouds& clouds,
                                    std::uint32_t k, real d_max, const std::vector<real>& first, bool again) {
   const auto& on = passes.on;
-  // A device passes over all points while a host copies and sorts some thousand pairs.
-  constexpr std::size_t as_long = pairs_on<std::remove_cvref_t<decltype(on)>>::meets_points ? 1 << 11 : 1 << 16;
-  const std::size_t parts = passes.model.size(), enough = 4 * k * parts + as_long;
+  const std::size_t parts = passes.model.size(), enough = few_pairs<std::remove_cvref_t<decltype(on)>>(k, parts);
   std::vector<nearest_window> windows;
   std::vector<std::uint32_t> bounds, before(parts);
   for (const real bound : first)
@@ -335,18 +356,37 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
 template <class Passes, class Clouds>
 nearest_k_result list_nearest(Passes& passes, known_nearest& known, std::span<const Eigen::Isometry3d> poses,
                               const Clouds& clouds, std::size_t k, real d_max) {
+  using on = std::remove_cvref_t<decltype(passes.on)>;
+  const std::size_t parts = passes.model.size();
   const bool cold = k > known.k;
   const std::vector<real> first = cold ? bounds_of_nearest(passes, poses, clouds, k, d_max) : known.first_bounds(d_max);
+  const auto tell = [&](const within_result& near) {
+    nearest_k_result found;
+    found.per_part = k;
+    found.counts = near.counts;
+    found.certain = near.certain;
+    take_nearest(found, near);
+    return found;
+  };
+  // If all that are as near as the last frame's are few, and enough, one pass is all.
+  if (!cold && !known.crowded && std::ranges::find(first, infinity) == first.end()) {
+    within_result near;
+    known.crowded = !list_few_within(passes, poses, clouds, first, few_pairs<on>(k, parts), near);
+    bool enough = !known.crowded;
+    for (std::size_t p = 0; p < parts && enough; ++p)
+      enough = near.offsets[p + 1] - near.offsets[p] >= k || !(first[p] < d_max);
+    if (enough) {
+      nearest_k_result found = tell(near);
+      if (k >= known.k) known.learn(found);
+      return found;
+    }
+  }
   const std::vector<real> radii = radii_of_nearest(passes, poses, clouds, std::uint32_t(k), d_max, first, !cold);
-  const within_result near = list_within(passes, poses, clouds, radii);
-  nearest_k_result all;
-  all.per_part = k;
-  all.counts = near.counts, all.certain = near.certain;
-  take_nearest(all, near);
+  nearest_k_result found = tell(list_within(passes, poses, clouds, radii));
   const bool lost =
       !std::equal(radii.begin(), radii.end(), first.begin(), [](real now, real before) { return now <= before; });
-  if (k >= known.k || lost) known.learn(all);  // what is known of more is a bound for fewer, too
-  return all;
+  if (k >= known.k || lost) known.learn(found);  // what is known of more is a bound for fewer, too
+  return found;
 }
 
 }  // namespace pairwise

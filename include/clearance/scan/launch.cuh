@@ -192,15 +192,12 @@ class launcher {
     a.top_stride = a.parts == 0 ? 0 : std::min(decltype(block_memory<Tally>::tops)::capacity / a.parts, 128u);
     using how = typename Tally::scan_type;
     const auto kernel = how::template kernel<Tally, Source>();
-    const bool waits = limits_.raise(reinterpret_cast<const void*>(kernel), most_shared_);
+    limits_.raise(reinterpret_cast<const void*>(kernel), most_shared_);
     const unsigned resident =
         2 * (shared + 1024) <= shared_of_processor_ && a.overflow == nullptr ? processors_ * 2 : processors_;
     const unsigned blocks = std::max(1u, std::min(resident, (a.points + how::in_block - 1) / how::in_block));
     how::plan(source, a, blocks);
-    if (waits)
-      on_.launch_early(kernel, blocks, block_threads, shared, source, a);
-    else
-      on_.launch(kernel, blocks, block_threads, shared, source, a);
+    on_.launch_early(kernel, blocks, block_threads, shared, source, a);
   }
 
   device on_;
