@@ -37,8 +37,9 @@ std::size_t different(const winding<>& w, const std::vector<vec3>& points, std::
   const auto is_inside = gpu.copy_out(insides);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    wrong += winds[i] != w.view().winding(points[i]) || is_inside[i] != (unsigned char)(w.view().inside(points[i]));
-    inside += w.view().inside(points[i]);
+    const unsigned char expected = w.view().inside(points[i]);
+    wrong += winds[i] != w.view().winding(points[i]) || is_inside[i] != expected;
+    inside += expected;
   }
   return wrong;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The law of frames on a device, where they are a graph, too.
+// Laws of questions on a device: beside images, and frame after frame, which may be a graph.
 
 #include "support/held_stream.cuh"
 #include "support/product_device.cuh"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Laws of every question about pairs, on any backend. `Cases` says what is asked, what is right by definition, and
-// where a backend writes it (zones_cases is one); it counts what it saw, so that a test can tell that something was
-// asked.
+// Laws of questions about pairs, on any backend. `Cases` (zones_cases is one) says what is asked, what is right by
+// definition and where a backend writes it, and counts what it saw: so a test can tell that there was something to see.
 
 #include "support/frames.hpp"
 
@@ -46,7 +45,7 @@ auto written(const On& on, std::size_t parts, std::size_t points) {
 template <class V, class P, class Cases, class... On>
 void hold_in_all_scenes(Cases& cases, const On&... on) {
   using question = typename Cases::question;
-  struct case_ {
+  struct one_case {
     clouds all;
     question asked;
     typename question::result expected;
@@ -54,7 +53,7 @@ void hold_in_all_scenes(Cases& cases, const On&... on) {
   };
   verdict v;
   for (const auto& s : scenes<P>()) {
-    std::vector<case_> all;
+    std::vector<one_case> all;
     const auto add = [&](const clouds& its, const question& q, const std::string& what) {
       all.push_back({its, q, cases.by_definition(s, its, q), s.name + what});
       cases.saw(all.back().expected);
@@ -64,15 +63,14 @@ void hold_in_all_scenes(Cases& cases, const On&... on) {
     add({two[0]}, all[0].asked, ", one cloud");
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto hold = [&](const auto& its, const auto& there) {
-      for (const case_& c : all) require_same(ask(its, there, s.poses, c.all, c.asked), c.expected, v, c.what);
+      for (const one_case& c : all) require_same(ask(its, there, s.poses, c.all, c.asked), c.expected, v, c.what);
     };
     (hold(on, model.on(on)), ...);
   }
 }
 
 /// Frame after frame a prepared question says what the host says in one call, waited for and enqueued, and goes on
-/// after one that is refused. Then `more(frames, enqueue, look)` may enqueue it in other ways, and look at what was
-/// written.
+/// after one that is refused. Then `more(frames, query, model, verdict)` may ask it in other ways.
 template <class Cases, class On, class More>
 void hold_in_every_frame(Cases& cases, const On& on, std::size_t parts, unsigned seed, const More& more) {
   using question = typename Cases::question;
