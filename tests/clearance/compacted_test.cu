@@ -12,24 +12,7 @@ using namespace testing;
 using clearance::device;
 
 TEST_CASE("On a device, too, what is left of a cloud are its valid points, in their order") {
-  verdict v;
-  const device gpu;
-  for_each_compacted([&](const auto& source, const auto& points, const auto& numbers, const std::string& what) {
-    // Labels have to be where the backend reads them, so what is masked is a copy here.
-    const auto require = [&](const auto& there) {
-      const auto found = clearance::compacted(gpu, there);
-      v.require(found.numbers == numbers, what, ": ", found.numbers.size(), " are left, and not ", numbers.size());
-      v.require(found.points.size() == points.size() &&
-                    std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }),
-                what, ": some point differs");
-    };
-    if constexpr (requires { source.labels; }) {
-      const auto labels = gpu.copy_in(std::span<const clearance::point_label>(source.labels, source.size()));
-      require(clearance::masked(source.source, labels.data()));
-    } else {
-      require(source);
-    }
-  });
+  check_compacted(device{});
 }
 
 TEST_CASE("A graph leaves out what is invalid when it runs") {

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Extreme numbers on the host: the answer of brute force in every bit, and the truth within the bracket.
-#include "minimum/edge_scenes.hpp"
-#include "solid/shapes.hpp"
-#include "support/product.hpp"
+#include "minimum/edge_cases.hpp"
 
-#include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
-#include <clearance/volume/obb.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace edge_test {
 
 using namespace testing;
-using clearance::host, clearance::min_distance, clearance::min_distance_per_part, clearance::placed,
-    clearance::point_span;
+using clearance::host, clearance::min_distance, clearance::point_span;
 
 namespace {
 
@@ -31,85 +25,62 @@ wide truth_of(const scene<inner_sphere>& s, const std::vector<Eigen::Isometry3d>
   return least;
 }
 
-/// Plain, cold, warm, moved and moved back.
-template <class Model>
-void ask(const Model& model, const scene<inner_sphere>& s, verdict& v, const std::string& what) {
-  const auto parts = brute_parts(s);
-  auto poses = s.poses;
-  const placed cloud{point_span(s.points), s.cloud_pose};
-  clearance::query query(host{2}, model, min_distance{});
-  clearance::query alone(host{1}, model, min_distance_per_part{});
-  brute_answer expected;
-  const auto same = [&](const std::string& when) {
-    require_equal(ask(host{}, model, poses, cloud, min_distance{}), expected, v, what + ", plain, " + when);
-    require_equal(query(poses, cloud), expected, v, what + ", " + when);
-    const auto& [r, minima] = alone(poses, cloud);
-    require_equal(r, expected, v, what + ", per part, " + when);
-    require_equal(minima, expected, v, what + ", " + when);
-  };
-  const auto moved = [&](const std::string& when) {
-    expected = brute_force(parts, poses, {brute_cloud(cloud.source, cloud.pose)});
-    same(when);
+/// Against brute force, whose distances the truth is near.
+struct by_definition {
+  const scene<inner_sphere>& s;
+  verdict& v;
+  std::string what;
+
+  void operator()(const clearance::min_distance_result& r, const clearance::min_distance_per_part_result& by_parts,
+                  const std::vector<Eigen::Isometry3d>& poses, const std::string& when) const {
+    const auto expected = brute_force(brute_parts(s), poses, {brute_cloud(point_span(s.points), s.cloud_pose)});
+    require_equal(r, expected, v, what + ", " + when);
+    require_equal(by_parts.all, expected, v, what + ", per part, " + when);
+    require_equal(by_parts.parts, expected, v, what + ", " + when);
     if (expected.part == none || (poses.size() < 4 && when != "cold")) return;  // the large parts' truth takes long
     const wide truth = truth_of(s, poses), to_solid = std::max(truth, wide(0));
-    const auto r = query(poses, cloud);
     v.require(r.lower <= to_solid && to_solid <= r.upper, what, ", ", when, ": bracket", r.lower, " to", r.upper,
               " misses", truth);
     v.require(std::isfinite(r.distance), what, ", ", when, ": not finite");
-  };
-  moved("cold");
-  same("warm");
-  poses[0].translation().x() += 0.01, poses.back().translation().z() -= 5;
-  moved("moved");
-  poses = s.poses;
-  query.forget();
-  moved("moved back");
-}
+  }
+};
 
 }  // namespace
 
 TEST_CASE("Extreme numbers of parts, spheres, points and metres are exact on the host") {
   verdict v;
+  const auto check = [&](const auto& s, const auto& model, const std::string& what) {
+    check_edge(host{2}, model, s.poses, s.points, s.cloud_pose, v, what, by_definition{s, v, what});
+    check_edge(host{1}, model, s.poses, s.points, s.cloud_pose, v, what + ", one thread", nobody);
+  };
   for (const auto& s : edge_scenes()) {
     const auto model = edge_model(s);
-    ask(model, s, v, s.name);
+    check(s, model, s.name);
     if (s.name != deep_scene) continue;
     const auto binary = edge_model(s, {.width = 2});
     for (const auto& deep : {model.parts()[0].view().tree, binary.parts()[0].view().tree})
       CHECK(clearance::stack_need(deep) >= 60);
-    ask(binary, s, v, s.name + ", width 2");
+    check(s, binary, s.name + ", width 2");
   }
 }
 
 TEST_CASE("Where every point is inside a solid the distance is 0, at the first point, and it is a collision") {
-  dice d(79);
   verdict v;
-  std::vector<decltype(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(1))))> parts;
-  std::vector<brute_part<triangle, decltype(parts[0].view().interior)>> brute;
-  for (const double half : {2.0, 1.0, 3.0})
-    parts.push_back(clearance::make_part<clearance::obb>(clearance::close_mesh(shapes::cube(half))));
-  for (const auto& part : parts) brute.push_back({part.tree.primitives, part.facts, part.view().interior});
-  for (std::size_t k = 0; k < brute.size(); ++k)  // in the user's order, as brute force counts
-    for (std::size_t i = 0; i < brute[k].primitives.size(); ++i)
-      brute[k].primitives[parts[k].tree.ids[i]] = parts[k].tree.primitives[i];
-  const clearance::model model(std::move(parts));
-  for (const double off : {0.0, 1000.0}) {  // the second box
-    const std::vector<Eigen::Isometry3d> poses = {d.pose(0.1), shifted(off, 0, 0) * d.pose(0.1), d.pose(0.1)};
-    auto points = d.points(20000, 0.5);
-    points[0].z = clearance::not_a_number;
-    clearance::query query(host{2}, model, min_distance{});
-    clearance::query by_parts(host{2}, model, min_distance_per_part{});
-    const auto expected = brute_force(brute, poses, {brute_cloud(point_span(points))});
-    for (const char* when : {"cold", "warm"}) {
-      const auto r = query(poses, points);
-      require_equal(r, expected, v, when);
-      CHECK((r.distance == 0 && r.point == 1 && r.part == 0 && r.state == clearance::state::collision && r.upper == 0 &&
-             r.lower == 0));
-      const auto& [robot, minima] = by_parts(poses, points);
-      require_equal(robot, expected, v, when);
-      require_equal(minima, expected, v, when);
+  check_all_inside(host{2}, 20000, v, [&](const auto& model, const std::vector<vec3>& points) {
+    using interior = decltype(model.parts()[0].view().interior);
+    std::vector<brute_part<triangle, interior>> parts;
+    for (const auto& part : model.parts()) {  // in the user's order, as brute force counts
+      parts.push_back({part.tree.primitives, part.facts, part.view().interior});
+      for (std::size_t i = 0; i < part.tree.ids.size(); ++i)
+        parts.back().primitives[part.tree.ids[i]] = part.tree.primitives[i];
     }
-  }
+    return [&, parts](const auto& r, const auto& by_parts, const auto& poses, const std::string& when) {
+      const auto expected = brute_force(parts, poses, {brute_cloud(point_span(points))});
+      require_equal(r, expected, v, when);
+      require_equal(by_parts.all, expected, v, when);
+      require_equal(by_parts.parts, expected, v, when);
+    };
+  });
 }
 
 TEST_CASE(

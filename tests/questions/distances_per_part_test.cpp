@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every part's distance to every point is that of a plain loop, and the least of them is the point's distance.
 #include "support/brute_per_part.hpp"
-#include "support/frames.hpp"
+#include "support/question_laws.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -12,28 +12,26 @@ using namespace testing;
 using clearance::distances_per_part, clearance::host;
 
 TEST_CASE("Every part's distance to every point is brute force's, to the bit, and their least that of distances") {
+  per_part_cases cases;
+  hold_in_all_scenes<clearance::sphere, inner_sphere>(cases, host{});
+  CHECK((cases.near > 1000 && cases.far > 1000));
   verdict v;
-  std::size_t near = 0, far = 0;
-  for (auto s : scenes<inner_sphere>()) {
-    if (s.points.size() > 3) s.points[1].x = clearance::not_a_number, s.points[3].z = clearance::infinity;
+  for (const auto& s : scenes<inner_sphere>()) {
     const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
-    for (const real d_max : {real(0), real(0.2 * s.size), clearance::infinity}) {
-      const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      const auto found = ask(host{}, model, s.poses, two, distances_per_part{d_max});
-      require_same(found, brute_per_part(s, two, d_max, nothing_inside), v, what);
-      const auto least = ask(host{}, model, s.poses, two, clearance::distances{d_max});
+    for (const distances_per_part& q : cases.of_scene(s)) {
+      const std::string what = s.name + ", d_max " + std::to_string(q.d_max);
+      const auto found = ask(host{}, model, s.poses, two, q);
+      const auto least = ask(host{}, model, s.poses, two, clearance::distances{q.d_max});
       for (std::size_t i = 0; i < found.points; ++i) {
         real nearest = found.of(0)[i];
         for (std::size_t k = 1; k < s.parts.size(); ++k) nearest = found.of(k)[i] < nearest ? found.of(k)[i] : nearest;
         v.require(nearest != nearest ? least.distance[i] != least.distance[i] : nearest == least.distance[i], what,
                   ": the least of point", i, " is", nearest, " and not", least.distance[i]);
-        near += nearest <= d_max, far += nearest == clearance::infinity;
       }
       v.require(same_bits(found.certain.lower(1), least.certain.lower(1)), what, ": another certainty");
     }
   }
-  CHECK((near > 1000 && far > 1000));
 }
 
 TEST_CASE("No point, no part in reach, and d_max that is no number") {
@@ -48,21 +46,8 @@ TEST_CASE("No point, no part in reach, and d_max that is no number") {
 }
 
 TEST_CASE("Prepared, every part's distances are in every frame what one call says, and after one that is refused") {
-  verdict v;
-  moving_frames f(5, 116);
-  const auto model = f.model();
-  clearance::query query(host{}, model, distances_per_part{});
-  for (; f.there(); f.next()) {
-    const real d_max = f.number % 2 ? 0.3f : clearance::infinity;
-    const auto expected = ask(host{}, model, f.s.poses, f.here(), distances_per_part{d_max});
-    const std::string what = "frame " + std::to_string(f.number);
-    require_same(query(f.s.poses, f.here(), {d_max}), expected, v, what);
-    clearance::part_distances enqueued = expected;
-    std::fill(enqueued.distance.begin(), enqueued.distance.end(), real(-1)), enqueued.counts = {};
-    query.enqueue(f.s.poses, f.here(), {d_max}, {enqueued.distance.data(), &enqueued.counts});
-    require_same(enqueued, expected, v, what + ", enqueued");
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {clearance::not_a_number}), std::invalid_argument);
-  }
+  per_part_cases cases;
+  hold_in_every_frame(cases, host{}, 5, 116);
 }
 
 }  // namespace distances_per_part_test

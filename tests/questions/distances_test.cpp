@@ -21,20 +21,8 @@ template <class V, class P>
 void all_scenes() {
   verdict v;
   for (const auto& s : scenes<P>()) {
-    const sources<P> all(s);
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    for (const real d_max : {real(-0.05), real(0), real(0.2), real(3), clearance::infinity}) {
-      const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
-      const placed cloud{all.span, s.cloud_pose};
-      require_same(ask(host{}, model, s.poses, cloud, distances{d_max, true}), expected, v, what);
-      require_same(ask(host{1}, model, s.poses, cloud, distances{d_max}), expected, v,
-                   what + ", one thread, distances alone");
-      append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
-      require_same(
-          ask(host{}, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), distances{d_max, true}),
-          expected, v, what + ", two clouds");
-    }
+    for (const unsigned threads : {0u, 1u}) hold_distances(host{threads}, s, model, v);
   }
 }
 

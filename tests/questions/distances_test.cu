@@ -14,7 +14,7 @@
 namespace distances_test {
 
 using namespace testing;
-using clearance::device, clearance::distances, clearance::host, clearance::placed, clearance::point_span;
+using clearance::device, clearance::distances, clearance::host, clearance::point_span;
 
 namespace {
 
@@ -23,20 +23,10 @@ void all_scenes(std::uint32_t width, bool layered = false) {
   verdict v;
   const device gpu;
   for (const auto& s : scenes<P>()) {
-    const sources<P> all(s);
     const clearance::build_options build{.width = width, .leaf_size = width == 4 ? 1u : 4u};
     const auto model =
-        (layered ? make_model<V>(s, build, clearance::layered{}) : make_model<V>(s, build, clearance::wrapped{}))
-            .on(gpu);
-    for (const real d_max : {real(-0.05), real(0), real(0.2), clearance::infinity}) {
-      const std::string what = s.name + ", d_max " + std::to_string(d_max);
-      auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
-      const placed cloud{all.span, s.cloud_pose};
-      require_same(ask(gpu, model, s.poses, cloud, distances{d_max, true}), expected, v, what);
-      append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
-      require_same(ask(gpu, model, s.poses, std::tuple(cloud, placed{all.raw, all.camera_pose}), distances{d_max}),
-                   expected, v, what + ", two clouds");
-    }
+        layered ? make_model<V>(s, build, clearance::layered{}) : make_model<V>(s, build, clearance::wrapped{});
+    hold_distances(gpu, s, model.on(gpu), v);
   }
 }
 

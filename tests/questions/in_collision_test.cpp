@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Is a point within a margin, and which is the first? As a loop over all points and primitives says.
-#include "support/brute_distances.hpp"
-#include "support/frames.hpp"
+#include "support/brute_collision.hpp"
+#include "support/question_laws.hpp"
 
 #include <clearance/make_model.hpp>
-#include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
@@ -14,62 +13,15 @@ namespace in_collision_test {
 using namespace testing;
 using clearance::host, clearance::in_collision, clearance::placed, clearance::point_span, clearance::state;
 
-namespace {
-
-/// The first pair (point, part) that is certainly within its margin, and the first that may be.
-template <class P>
-clearance::collision_result brute(const scene<P>& s, const clouds& all, const std::vector<double>& margins) {
-  const auto error = error_of(s, all);
-  clearance::collision_result r;
-  for (const auto& cloud : all)
-    for (std::size_t i = 0; i < cloud.source.size(); ++i) r.counts.valid += cloud.source[i].valid();
-  if (r.counts.valid != 0) r.state = state::free;
-  for_each_pair(s, all, [&](const clearance::pair_distance& pair) {
-    const long double d = pair.distance, off = error.here + (long double)(error.per_metre) * std::abs(d);
-    const state its = d + off <= margins[pair.part]   ? state::collision
-                      : d - off <= margins[pair.part] ? state::possible
-                                                      : state::free;
-    if (its == state::free || r.state == state::collision || its == r.state) return;
-    r.state = its, r.cloud = pair.cloud, r.point = pair.point, r.part = pair.part;
-  });
-  return r;
-}
-
-template <class V, class P>
-void all_scenes() {
-  verdict v;
-  std::size_t states[4] = {};
-  for (const auto& s : scenes<P>()) {
-    const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const auto two = two_clouds(s);
-    for (const double margin : {-0.1, 0.0, 1e-7, 0.02, 0.3}) {
-      std::vector<double> margins(s.parts.size(), margin * s.size);
-      for (const bool own : {false, true}) {
-        if (own) margins[0] = 2 * margin * s.size;
-        const auto expected = brute(s, two, margins);
-        for (const unsigned threads : {0u, 1u}) {
-          const auto r = own ? ask(host{threads}, model, s.poses, two, in_collision{{margins}})
-                             : ask(host{threads}, model, s.poses, two, in_collision{{margins[0]}});
-          v.require(r.state == expected.state && r.cloud == expected.cloud && r.point == expected.point &&
-                        r.part == expected.part && r.counts.valid == expected.counts.valid,
-                    s.name, ", margin ", margin, own ? ", one a part" : "", ": ", to_string(r.state), " and not ",
-                    to_string(expected.state), ", point ", r.point, " and not ", expected.point, ", part ", r.part,
-                    " and not ", expected.part);
-        }
-        ++states[int(expected.state)];
-      }
-    }
-  }
-  CHECK((states[int(state::free)] > 5 && states[int(state::collision)] > 5));
-}
-
-}  // namespace
-
 TEST_CASE("A point within a margin of inner spheres is found, the first that is certain") {
-  all_scenes<clearance::sphere, inner_sphere>();
+  collision_cases cases;
+  hold_in_all_scenes<clearance::sphere, inner_sphere>(cases, host{}, host{1});
+  CHECK((cases.count(state::free) > 5 && cases.count(state::collision) > 5));
 }
 TEST_CASE("A point within a margin of triangles is found, the first that is certain") {
-  all_scenes<clearance::aabb, triangle>();
+  collision_cases cases;
+  hold_in_all_scenes<clearance::aabb, triangle>(cases, host{}, host{1});
+  CHECK((cases.count(state::free) > 5 && cases.count(state::collision) > 5));
 }
 
 TEST_CASE("What rounding leaves open of a depth is possible, too") {
@@ -163,29 +115,9 @@ TEST_CASE("Of a robot without parts nothing is known, whatever is asked") {
 
 TEST_CASE(
     "A prepared question of collision says in every frame what one call says, and goes on after one that is refused") {
-  verdict v;
-  moving_frames f(5, 113);
-  const auto model = f.model();
-  clearance::query query(host{}, model, in_collision{});
-  const auto same = [](const clearance::collision_result& a, const clearance::collision_result& b) {
-    return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
-           a.counts.valid == b.counts.valid;
-  };
-  std::size_t states[4] = {};
-  for (; f.there(); f.next()) {
-    const std::vector<double> margins(f.number % 2 ? 5 : 1, f.number < 4 ? 0.01 : -0.05);
-    const auto expected = ask(host{}, model, f.s.poses, f.here(), in_collision{{margins}});
-    ++states[int(expected.state)];
-    v.require(same(query(f.s.poses, f.here(), {margins}), expected), "frame ", f.number, ": ",
-              to_string(expected.state));
-    clearance::collision_result enqueued;
-    query.enqueue(f.s.poses, f.here(), {margins}, &enqueued);
-    v.require(same(enqueued, expected), "frame ", f.number, ", enqueued: ", to_string(enqueued.state), " and not ",
-              to_string(expected.state));
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{clearance::not_a_number}}), std::invalid_argument);
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {{0.1, 0.2}}), std::invalid_argument);
-  }
-  CHECK((states[int(state::free)] > 0 && states[int(state::collision)] > 0 && states[int(state::no_data)] == 1));
+  collision_cases cases;
+  hold_in_every_frame(cases, host{}, 5, 113);
+  CHECK((cases.count(state::free) > 0 && cases.count(state::collision) > 0 && cases.count(state::no_data) == 1));
 }
 
 }  // namespace in_collision_test

@@ -2,7 +2,7 @@
 // The nearest confirmed point is the first, after sorting, with enough others around it.
 #include "solid/shapes.hpp"
 #include "support/brute_support.hpp"
-#include "support/frames.hpp"
+#include "support/question_laws.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/questions/min_distance.hpp>
@@ -19,27 +19,22 @@ namespace {
 
 template <class V, class P>
 void all_scenes() {
+  supported_cases cases;
+  hold_in_all_scenes<V, P>(cases, host{});
+  CHECK((cases.isolated > 1000 && cases.confirmed > 20));
   verdict v;
-  std::size_t isolated = 0, confirmed = 0;
   for (const auto& s : scenes<P>()) {
     const auto model = make_model<V>(s, {}, clearance::wrapped{});
     const auto two = two_clouds(s);
-    for (const std::uint32_t min_points : {1, 2, 4})
-      for (const double radius : {0.0, 0.05, 0.3}) {
-        const min_distance_supported options{.min_points = min_points, .radius = radius * s.size, .most = 1 << 14};
-        const auto r = ask(host{}, model, s.poses, two, options);
-        require_same(r, brute_support(s, two, options), v,
-                     s.name + ", " + std::to_string(min_points) + " within " + std::to_string(options.radius));
-        if (min_points == 1) {
-          const auto least = clearance::ask(host{}, model, s.poses, two, clearance::min_distance{});
-          v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point &&
-                        r.part == least.part && r.primitive == least.primitive && r.counts.valid == least.valid,
-                    s.name, ": one point confirms itself");
-        }
-        isolated += r.isolated, confirmed += r.cloud != clearance::none;
-      }
+    const auto least = clearance::ask(host{}, model, s.poses, two, clearance::min_distance{});
+    for (const min_distance_supported& q : cases.of_scene(s)) {
+      if (q.min_points != 1) continue;
+      const auto r = ask(host{}, model, s.poses, two, q);
+      v.require(same_bits(r.distance, least.distance) && r.cloud == least.cloud && r.point == least.point &&
+                    r.part == least.part && r.primitive == least.primitive && r.counts.valid == least.valid,
+                s.name, ": one point confirms itself");
+    }
   }
-  CHECK((isolated > 1000 && confirmed > 20));
 }
 
 const clearance::model robot{std::vector{
@@ -127,16 +122,8 @@ TEST_CASE("What confirms nothing is refused") {
 }
 
 TEST_CASE("Prepared, the nearest confirmed point is in every frame what one call says, and after one that is refused") {
-  verdict v;
-  moving_frames f(5, 115);
-  const auto model = f.model();
-  clearance::query query(host{}, model, min_distance_supported{});
-  for (; f.there(); f.next()) {
-    const min_distance_supported options{.min_points = f.number % 2 ? 2u : 3u, .radius = 0.1};
-    const auto expected = ask(host{}, model, f.s.poses, f.here(), options);
-    require_same(query(f.s.poses, f.here(), options), expected, v, "frame " + std::to_string(f.number));
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {.min_points = 0}), std::invalid_argument);
-  }
+  supported_cases cases;
+  hold_in_every_frame(cases, host{}, 5, 115);
 }
 
 TEST_CASE("More points than there are confirm nothing, which is known at once") {

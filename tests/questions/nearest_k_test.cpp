@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The k nearest points of each part are those of a plain loop over all points and primitives, sorted and cut.
 #include "support/brute_nearest.hpp"
-#include "support/frames.hpp"
+#include "support/question_laws.hpp"
 
-#include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -12,32 +11,13 @@ namespace nearest_k_test {
 using namespace testing;
 using clearance::host, clearance::nearest_k, clearance::point_span;
 
-namespace {
-
-template <class V, class P>
-void all_scenes() {
-  verdict v;
-  for (const auto& s : scenes<P>()) {
-    const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const auto two = two_clouds(s);
-    for (const std::size_t k : {1, 7, 400})
-      for (const real d_max : {real(-0.02), real(0.3), clearance::infinity}) {
-        const real most = d_max * real(s.size);
-        const std::string what = s.name + ", " + std::to_string(k) + " within " + std::to_string(most);
-        const auto expected = brute_nearest(s, two, k, most);
-        require_same(ask(host{}, model, s.poses, two, nearest_k{k, most}), expected, v, what);
-        require_same(ask(host{1}, model, s.poses, two, nearest_k{k, most}), expected, v, what + ", one thread");
-      }
-  }
-}
-
-}  // namespace
-
 TEST_CASE("The k nearest points of inner spheres are the first of all, in order") {
-  all_scenes<clearance::sphere, inner_sphere>();
+  nearest_k_cases cases;
+  hold_in_all_scenes<clearance::sphere, inner_sphere>(cases, host{}, host{1});
 }
 TEST_CASE("The k nearest points of triangles are the first of all, in order") {
-  all_scenes<clearance::aabb, triangle>();
+  nearest_k_cases cases;
+  hold_in_all_scenes<clearance::aabb, triangle>(cases, host{}, host{1});
 }
 
 TEST_CASE("The nearest of very many that are about equally near, or exactly") {
@@ -75,19 +55,17 @@ TEST_CASE("How many and how far are numbers, and no point is no pair") {
 }
 
 TEST_CASE("Prepared, the nearest are in every frame what one call says, and after one that is refused") {
+  nearest_k_cases cases;
+  hold_in_every_frame(cases, host{}, 5, 114);
+}
+
+TEST_CASE(
+    "Prepared, the nearest are what one call says, a little farther and far behind what is known, and near again") {
   verdict v;
   moving_frames f(5, 114);
   const auto model = f.model();
   clearance::query query(host{}, model, nearest_k{});
-  for (; f.there(); f.next()) {
-    const std::size_t k = f.number < 4 ? 500 : 3;  // what is known of a frame is of use in some, and in some not
-    require_same(query(f.s.poses, f.here(), {k}), ask(host{}, model, f.s.poses, f.here(), nearest_k{k}), v,
-                 "frame " + std::to_string(f.number));
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {0}), std::invalid_argument);
-  }
-  for (const double away :
-       {0.0, 0.0, 0.01, 0.5, 0.0,
-        3.0}) {  // the same points again, a little farther, far behind what is known, and near again
+  for (const double away : {0.0, 0.0, 0.01, 0.5, 0.0, 3.0}) {
     for (auto& pose : f.s.poses) pose.translation().x() += away;
     f.see(3000);
     for (const std::size_t k : {40, 7, 100}) {

@@ -66,8 +66,8 @@ void thresholds_hold(std::size_t most_points) {
         const std::string what = s.name + ", scale " + std::to_string(scale) + ", within " + std::to_string(margin);
         const in_collision asked{{margin}, radii};
         const auto r = ask(host{}, model, s.poses, all, asked);
-        v.require(same_collision(r, ask(host{2}, model, s.poses, all, asked)), what, ": two threads");
-        v.require(same_collision(r, ask(host{}, by_tolerance, s.poses, all, in_collision{{margin}})), what,
+        v.require(same_answer(r, ask(host{2}, model, s.poses, all, asked)), what, ": two threads");
+        v.require(same_answer(r, ask(host{}, by_tolerance, s.poses, all, in_collision{{margin}})), what,
                   ": a radius is no tolerance");
         ++states[int(r.state)];
         if (r.state == state::no_data) continue;
@@ -79,7 +79,7 @@ void thresholds_hold(std::size_t most_points) {
                   lower);
         const zones around{.thresholds = {margin, 2 * margin + 0.1}, .radii = radii};
         const auto z = ask(host{}, model, s.poses, all, around);
-        v.require(same_zones(z, ask(host{}, by_tolerance, s.poses, all, zones{around.thresholds})), what,
+        v.require(same_answer(z, ask(host{}, by_tolerance, s.poses, all, zones{around.thresholds})), what,
                   ": a radius is no tolerance in zones");
         for (std::size_t k = 0; k < its.size(); ++k)
           for (std::size_t n = 0; n < 2; ++n) {

@@ -29,32 +29,24 @@ template <class Here, class There, class Clouds, class OnDevice>
 void check_all(const device& gpu, const Here& here, const There& there, const std::vector<Eigen::Isometry3d>& poses,
                const configurations& many, const Clouds& clouds, const OnDevice& on_device,
                const std::vector<double>& radii, double size, verdict& v, const std::string& what) {
-  const auto both = [&](const auto& question, const auto& same, const std::string& which, const auto& where) {
-    v.require(same(ask(host{}, here, where, clouds, question), ask(gpu, there, where, on_device, question)), what, ": ",
-              which);
-  };
-  const auto same_states = [](const auto& a, const auto& b) { return a.of == b.of && same_bytes(a.counts, b.counts); };
-  const auto same_results = [](const auto& a, const auto& b) {
-    return std::ranges::equal(a.of, b.of, [](const auto& x, const auto& y) { return same_result(x, y); });
-  };
-  const auto same_parts = [](const auto& a, const auto& b) {
-    return std::ranges::equal(a.all, b.all, [](const auto& x, const auto& y) { return same_result(x, y); });
+  const auto both = [&](const char* which, const auto& question, const auto& where) {
+    v.require(same_answer(ask(host{}, here, where, clouds, question), ask(gpu, there, where, on_device, question)),
+              what, ": ", which);
   };
   for (const auto& its : {std::vector<double>{}, radii})
     for (const double margin : {0.0, 0.1 * size, size}) {
-      both(in_collision{{margin}, its}, same_collision, "in_collision", poses);
-      both(zones{.thresholds = {margin, 2 * margin}, .radii = its}, same_zones, "zones", poses);
-      both(in_collisions{{margin}, its}, same_states, "in_collisions", many);
-      both(min_distances{margin, its}, same_results, "min_distances", many);
-      both(min_distances{infinity, its}, same_results, "min_distances without a limit", many);
-      both(min_distances_per_part{margin == 0 ? double(infinity) : margin, its}, same_parts, "min_distances_per_part",
-           many);
+      both("in_collision", in_collision{{margin}, its}, poses);
+      both("zones", zones{.thresholds = {margin, 2 * margin}, .radii = its}, poses);
+      both("in_collisions", in_collisions{{margin}, its}, many);
+      both("min_distances", min_distances{margin, its}, many);
+      both("min_distances without a limit", min_distances{infinity, its}, many);
+      both("min_distances_per_part", min_distances_per_part{margin == 0 ? double(infinity) : margin, its}, many);
     }
   clearance::query query(gpu, there, min_distances{});  // with radii, then without
   const std::vector<std::vector<double>> turns{radii, {}, radii};
   for (const auto& its : turns)
-    v.require(same_results(query(many, on_device, {infinity, its}),
-                           ask(host{}, here, many, clouds, min_distances{infinity, its})),
+    v.require(same_answer(clearance::min_distances_result(query(many, on_device, {infinity, its})),
+                          ask(host{}, here, many, clouds, min_distances{infinity, its})),
               what, ": a prepared question");
 }
 

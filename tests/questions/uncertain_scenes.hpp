@@ -5,6 +5,7 @@
 #include "support/brute_pairs.hpp"
 #include "support/oracle.hpp"
 #include "support/product.hpp"
+#include "support/same_answer.hpp"
 #include "support/same_result.hpp"
 
 #include <clearance/questions/certain_distance.hpp>
@@ -13,31 +14,7 @@
 
 namespace testing {
 
-using clearance::certain_distance, clearance::certain_distance_result, clearance::cloud_uncertainty;
-
-inline bool same_pair(const clearance::certain_pair& a, const clearance::certain_pair& b) {
-  return same_witness(a, b) && same_bits(a.lower, b.lower) && same_bytes(a.shares, b.shares) &&
-         same_bits(a.to_ball, b.to_ball);
-}
-inline bool same_certain(const certain_distance_result& a, const certain_distance_result& b) {
-  return a.state == b.state && a.anywhere == b.anywhere && a.any_radius == b.any_radius &&
-         same_bits(a.lower, b.lower) && same_bits(a.upper, b.upper) && same_result(a.nominal, b.nominal) &&
-         same_pair(a.certain, b.certain) &&
-         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), same_pair);
-}
-
-/// Not byte by byte: there is padding behind a state.
-inline bool same_collision(const clearance::collision_result& a, const clearance::collision_result& b) {
-  return a.state == b.state && a.cloud == b.cloud && a.point == b.point && a.part == b.part &&
-         same_bytes(a.counts, b.counts);
-}
-inline bool same_zones(const clearance::zones_result& a, const clearance::zones_result& b) {
-  return same_bytes(a.counts, b.counts) && std::ranges::equal(a.zones, b.zones, [](const auto& x, const auto& y) {
-           return x.points == y.points && same_bits(x.nearest, y.nearest) && x.nearest_cloud == y.nearest_cloud &&
-                  x.nearest_point == y.nearest_point && x.first_cloud == y.first_cloud &&
-                  x.first_point == y.first_point;
-         });
-}
+using clearance::certain_distance, clearance::cloud_uncertainty;
 
 /// A scene's points with a radius each, some of them 0, and its parts with radii.
 template <class P>

@@ -40,7 +40,7 @@ void all_scenes(std::size_t most_points) {
       const std::string what = s.name + ", scale " + std::to_string(scale);
       const auto model = make_model<V>(s, {}, clearance::wrapped{});
       const auto r = ask(host{}, model, s.poses, all, certain_distance{u.parts});
-      v.require(same_certain(ask(host{2}, model, s.poses, all, certain_distance{u.parts}), r), what, ": two threads");
+      v.require(same_answer(ask(host{2}, model, s.poses, all, certain_distance{u.parts}), r), what, ": two threads");
       const std::vector<placed<point_span>> bare{{source.source, all[0].pose}, {source.source, all[1].pose}};
       v.require(same_result(r.nominal, ask(host{}, model, s.poses, bare, clearance::min_distance{})), what,
                 ": nominal");
@@ -197,7 +197,7 @@ TEST_CASE("Tiles that are passed over by their largest radius change nothing, an
     const uncertain quick(image, noise, off);
     const uncertain slow(image, without_most{noise}, off);
     const auto r = ask(host{}, model, s.poses, placed{quick}, certain_distance{});
-    v.require(same_certain(r, ask(host{}, model, s.poses, placed{slow}, certain_distance{})), "another answer");
+    v.require(same_answer(r, ask(host{}, model, s.poses, placed{slow}, certain_distance{})), "another answer");
     const auto least = least_certain(s, std::vector{placed{quick}});
     for (std::size_t k = 0; k < least.size(); ++k)
       v.require(r.parts[k].point == least[k].point, "part", k, " has point", r.parts[k].point, " of", least[k].point);

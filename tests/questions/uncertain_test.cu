@@ -34,12 +34,12 @@ void all_scenes() {
                  asked);
     };
     const auto expected = ask_all(host{}, model, u.source());
-    v.require(same_certain(ask_all(gpu, there, u.source(radii.data(), points.data())), expected), s.name);
-    v.require(same_certain(ask_all(gpu, there, u.source(radii.data(), s.points.data())), expected), s.name,
+    v.require(same_answer(ask_all(gpu, there, u.source(radii.data(), points.data())), expected), s.name);
+    v.require(same_answer(ask_all(gpu, there, u.source(radii.data(), s.points.data())), expected), s.name,
               ": from host memory");
     const auto formula = [&](const auto& noise) {
       const uncertain here(point_span(s.points), noise, u.all);
-      v.require(same_certain(ask_all(gpu, there, here), ask_all(host{}, model, here)), s.name, ": by a formula");
+      v.require(same_answer(ask_all(gpu, there, here), ask_all(host{}, model, here)), s.name, ": by a formula");
     };
     formula(clearance::kinect_noise{}), formula(clearance::stereo_noise{424, 0.05f, 0.08f});
     formula(clearance::tof_noise{0.004f, 0.001f}), formula(clearance::lidar_noise{0.02f, 0.001f});
@@ -83,7 +83,7 @@ TEST_CASE("On a device several cameras of different kinds have radii of their ow
     const auto copy = gpu.copy_in(std::span<const real>(radii));
     const auto [here, hides] = look(host{}, model, radii.data());
     const auto [on_gpu, hides_on_gpu] = look(gpu, there, copy.data());
-    v.require(same_certain(on_gpu, here), "a device says something else");
+    v.require(same_answer(on_gpu, here), "a device says something else");
     v.require(same_result(hides_on_gpu.all, hides.all), "a device hides something else");
     v.require(bad == 0.03f || (on_gpu.lower == 0 && on_gpu.state != clearance::state::free), "free");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in zones are those of a plain loop over all points and primitives.
 #include "support/brute_zones.hpp"
-#include "support/frames.hpp"
+#include "support/question_laws.hpp"
 
 #include <clearance/make_model.hpp>
 #include <clearance/volume/aabb.hpp>
@@ -10,42 +10,24 @@
 namespace zones_test {
 
 using namespace testing;
-using clearance::host, clearance::placed, clearance::point_span, clearance::zones;
-
-namespace {
-
-template <class V, class P>
-void all_scenes() {
-  verdict v;
-  std::size_t counted = 0;
-  for (const auto& s : scenes<P>()) {
-    const auto model = make_model<V>(s, {}, clearance::wrapped{});
-    const auto two = two_clouds(s);
-    const clouds one{two[0]};
-    const std::vector<std::vector<double>> same(s.parts.size(), {0, 0.05 * s.size, 0.5 * s.size});
-    std::vector<std::vector<double>> own;
-    zones options{same[0]}, of_each{.thresholds = {}, .each_part = true};
-    for (std::size_t k = 0; k < s.parts.size(); ++k) {
-      own.push_back({0.1 * double(k + 1) * s.size, 0.3 * double(k + 1) * s.size});
-      of_each.thresholds.insert(of_each.thresholds.end(), own[k].begin(), own[k].end());
-    }
-    const auto found = ask(host{}, model, s.poses, one, options);
-    require_same(found, brute_zones(s, one, same), v, s.name);
-    require_same(ask(host{1}, model, s.poses, two, options), brute_zones(s, two, same), v,
-                 s.name + ", two clouds, one thread");
-    require_same(ask(host{}, model, s.poses, two, of_each), brute_zones(s, two, own), v,
-                 s.name + ", thresholds of each part");
-    for (const auto& z : found.zones) counted += z.points;
-  }
-  CHECK(counted > 1000);
-}
-
-}  // namespace
+using clearance::host, clearance::point_span, clearance::zones;
 
 TEST_CASE("Zones around inner spheres hold what all points and spheres say") {
-  all_scenes<clearance::sphere, inner_sphere>();
+  zones_cases cases;
+  hold_in_all_scenes<clearance::sphere, inner_sphere>(cases, host{}, host{1});
+  CHECK(cases.counted > 1000);
 }
-TEST_CASE("Zones around triangles hold what all points and triangles say") { all_scenes<clearance::aabb, triangle>(); }
+TEST_CASE("Zones around triangles hold what all points and triangles say") {
+  zones_cases cases;
+  hold_in_all_scenes<clearance::aabb, triangle>(cases, host{}, host{1});
+  CHECK(cases.counted > 1000);
+}
+
+TEST_CASE(
+    "A prepared question of zones says in every frame what one call says, and goes on after one that is refused") {
+  zones_cases cases;
+  hold_in_every_frame(cases, host{}, 5, 111);
+}
 
 TEST_CASE("What may be nearer by gap and tolerance is in the zone") {
   const std::vector<inner_sphere> ball{{{0, 0, 0}, 1}};
@@ -98,31 +80,6 @@ TEST_CASE("The innermost zone, few points, no point, and what cannot be asked") 
   CHECK_THROWS_AS(clearance::ask(host{}, two, std::vector(2, poses[0]), point_span(points),
                                  zones{.thresholds = {0.1, 0.2, 0.3}, .each_part = true}),
                   std::invalid_argument);
-}
-
-TEST_CASE(
-    "A prepared question of zones says in every frame what one call says, and goes on after one that is refused") {
-  verdict v;
-  moving_frames f(5, 111);
-  const auto model = f.model();
-  clearance::query query(host{}, model, zones{{0.0}});
-  for (; f.there(); f.next()) {
-    const zones options{.thresholds = f.number % 2 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
-    const auto expected = ask(host{}, model, f.s.poses, f.here(), options);
-    const std::string what = "frame " + std::to_string(f.number);
-    require_same(query(f.s.poses, f.here(), options), expected, v, what);
-    clearance::zones_result enqueued = expected;
-    std::fill(enqueued.zones.begin(), enqueued.zones.end(), clearance::zone{.points = 77});
-    enqueued.counts = {};
-    enqueued.per_part = options.per_part(f.s.parts.size());
-    query.enqueue(f.s.poses, f.here(), options, {enqueued.zones.data(), &enqueued.counts});
-    require_same(enqueued, expected, v, what + ", enqueued");
-    v.require(
-        enqueued.counts.valid == expected.counts.valid && expected.counts.valid + 1 >= moving_frames::sizes[f.number],
-        what, ": counts");
-    CHECK_THROWS_AS(query(f.s.poses, f.here(), {.thresholds = {0.2, 0.1}}), std::invalid_argument);
-    CHECK_THROWS_AS(query(std::span(f.s.poses).first(4), f.here(), options), std::invalid_argument);
-  }
 }
 
 }  // namespace zones_test

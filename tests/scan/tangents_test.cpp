@@ -2,14 +2,6 @@
 // Groups that walk by tangents on the host find the least over all primitives of all parts, in every bit: near and far,
 // few and many, inside and outside.
 #include "scan/tangent_scenes.hpp"
-#include "solid/shapes.hpp"
-#include "support/brute_distances.hpp"
-
-#include <clearance/make_model.hpp>
-#include <clearance/questions/distances.hpp>
-#include <clearance/volume/aabb.hpp>
-#include <clearance/volume/obb.hpp>
-#include <clearance/volume/sphere.hpp>
 
 namespace tangents_test {
 
@@ -45,49 +37,21 @@ using clearance::distances, clearance::host, clearance::placed, clearance::point
 
 namespace {
 
-template <class P, class Model, class Inside>
-void check(const scene<P>& s, const Model& model, std::span<const vec3> points, verdict& v, const std::string& what,
-           const Inside& inside) {
+const auto check = [](const auto& s, const auto& model, const std::vector<vec3>& points, const std::string& what,
+                      const auto& inside) {
   using view = std::remove_cvref_t<decltype(*model.view().parts)>;
   static_assert(clearance::scan::tangent_hierarchy<typename view::hierarchy_type>, "it walks otherwise");
-  const point_span span(points.data(), points.size());
+  verdict v;
+  const placed cloud{point_span(points), s.cloud_pose};
   for (const real d_max : {clearance::infinity, real(0.3), real(0), real(-0.01)}) {
-    const auto expected = brute_distances(s, span, s.cloud_pose, d_max, inside);
+    const auto expected = brute_distances(s, cloud.source, cloud.pose, d_max, inside);
     clearance::query warm(host{2}, model, distances{d_max, true});
     for (const unsigned threads : {1u, 2u})
-      require_same(ask(host{threads}, model, s.poses, placed{span, s.cloud_pose}, distances{d_max, true}), expected, v,
+      require_same(ask(host{threads}, model, s.poses, cloud, distances{d_max, true}), expected, v,
                    what + " within " + std::to_string(d_max) + ", threads " + std::to_string(threads));
-    for (int frame = 0; frame < 2; ++frame)
-      require_same(warm(s.poses, placed{span, s.cloud_pose}), expected, v, what + ", warm");
+    for (int frame = 0; frame < 2; ++frame) require_same(warm(s.poses, cloud), expected, v, what + ", warm");
   }
-}
-
-template <class V, class P>
-void all_scenes(std::uint32_t width, std::uint32_t leaf_size) {
-  verdict v;
-  dice d(78 + width + leaf_size);
-  for (const auto& s : scenes<P>()) {
-    const clearance::build_options build{.width = width, .leaf_size = leaf_size};
-    const auto model = make_model<V>(s, build, clearance::wrapped{});
-    auto points = patches(d, s.size);
-    points.insert(points.end(), s.points.begin(), s.points.end());
-    check(s, model, points, v, s.name, nothing_inside);
-    std::shuffle(points.begin(), points.end(), std::mt19937(5));
-    check(s, model, std::span(points).first(points.size() / 4), v, s.name + ", at random", nothing_inside);
-  }
-}
-
-/// A robot of solids as primitives that a plain loop can ask.
-template <class Model>
-scene<triangle> primitives_of(const Model& model, std::vector<Eigen::Isometry3d> poses) {
-  scene<triangle> s{"solids", {}, std::move(poses), {}};
-  for (const auto& part : model.parts()) {
-    s.parts.emplace_back(part.tree.primitives.size());
-    for (std::size_t k = 0; k < part.tree.primitives.size(); ++k)
-      s.parts.back()[part.tree.ids[k]] = part.tree.primitives[k];
-  }
-  return s;
-}
+};
 
 /// A solid whose primitives are signed.
 struct big_ball {
@@ -97,34 +61,15 @@ struct big_ball {
 
 }  // namespace
 
-TEST_CASE("By tangents to inner spheres, in every volume, on the host") {
-  all_scenes<clearance::sphere, inner_sphere>(8, 4);
-  all_scenes<clearance::aabb, inner_sphere>(4, 1);
-  all_scenes<clearance::obb, inner_sphere>(8, 2);
-}
-TEST_CASE("By tangents to triangles, in every volume, on the host") {
-  all_scenes<clearance::sphere, triangle>(8, 4);
-  all_scenes<clearance::aabb, triangle>(2, 9);
-  all_scenes<clearance::obb, triangle>(8, 4);
-}
-TEST_CASE("By tangents in a volume of one's own") { all_scenes<own_box, inner_sphere>(8, 3); }
+TEST_CASE("By tangents to inner spheres, in every volume, on the host") { by_tangents_to_spheres(check); }
+TEST_CASE("By tangents to triangles, in every volume, on the host") { by_tangents_to_triangles(check); }
+TEST_CASE("By tangents in a volume of one's own") { by_tangents_in_all_scenes<own_box, inner_sphere>(8, 3, check); }
 
 TEST_CASE("By tangents to solids that overlap and repeat, from inside, on their faces and in their middles") {
-  verdict v;
-  dice d(41);
-  const auto model = clearance::make_model<clearance::obb>(std::vector(3, clearance::close_mesh(shapes::cube(1))));
-  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-  const auto s = primitives_of(model, {here, here, d.pose(0.5)});
-  auto points = patches(d, 2);
-  for (int k = 0; k < 3000; ++k)
-    points.push_back({real(d.below(9)) / 4 - 1, real(d.below(9)) / 4 - 1, real(k / 400) / 4 - 1});
-  points.insert(points.end(), 200, vec3{0, 0, 0});
-  check(s, model, points, v, "boxes, two of them the same",
-        [&](std::uint32_t k, vec3 q) { return model.parts()[k].interior.view().inside(q); });
+  by_tangents_to_solids(check);
 }
 
 TEST_CASE("A point inside a solid is 0 away, whatever signed primitives of that solid are nearer") {
-  verdict v;
   dice d(43);
   scene<inner_sphere> s{"signed", {}, {}, {}};
   std::vector<clearance::part<clearance::bvh<clearance::sphere, inner_sphere>, big_ball>> parts;
@@ -144,11 +89,10 @@ TEST_CASE("A point inside a solid is 0 away, whatever signed primitives of that 
   const clearance::model model(parts);
   auto points = patches(d, 1);
   for (int k = 0; k < 64; ++k) points.push_back(d.point(0.01, {9, 0, 0}));
-  check(s, model, points, v, s.name, [&](std::uint32_t k, vec3 q) { return parts[k].interior.inside(q); });
+  check(s, model, points, s.name, [&](std::uint32_t k, vec3 q) { return parts[k].interior.inside(q); });
 }
 
 TEST_CASE("By tangents from few points, and from all numbers of points up to two groups") {
-  verdict v;
   dice d(44);
   const auto s = scenes<triangle>()[0];
   const auto model = make_model<clearance::aabb>(s, {}, clearance::wrapped{});
@@ -156,19 +100,13 @@ TEST_CASE("By tangents from few points, and from all numbers of points up to two
   std::vector<vec3> points;
   for (int k = 0; k < 130; ++k) points.push_back(corner + d.point(0.01));
   for (std::size_t count = 0; count <= points.size(); count += count < 70 ? 1 : 7)
-    check(s, model, std::span(points).first(count), v, std::to_string(count) + " points", nothing_inside);
+    check(s, model, {points.begin(), points.begin() + std::ptrdiff_t(count)}, std::to_string(count) + " points",
+          nothing_inside);
 }
 
-TEST_CASE("By tangents to 200 parts") {
-  verdict v;
-  dice d(42);
-  const scene<inner_sphere> s = many_parts(d);
-  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  check(s, model, patches(d, 1.5), v, "200 parts", nothing_inside);
-}
+TEST_CASE("By tangents to 200 parts") { by_tangents_to_many_parts(check); }
 
 TEST_CASE("By tangents through a node of more children than are looked at together") {
-  verdict v;
   dice d(46);
   const scene<inner_sphere> s{"wide", {random_spheres(d, 30)}, {d.pose(0.3)}, {}};
   const auto tree = clearance::build<clearance::sphere>(s.parts[0], {.leaf_size = 1});
@@ -180,7 +118,7 @@ TEST_CASE("By tangents through a node of more children than are looked at togeth
   wide.nodes[0] = {1, wide.width};
   REQUIRE(wide.width == 30);
   const clearance::model model{std::vector{clearance::make_part(wide)}};
-  check(s, model, patches(d, 1.5), v, "30 children", nothing_inside);
+  check(s, model, patches(d, 1.5), "30 children", nothing_inside);
 }
 
 TEST_CASE("By tangents from a wall in rows and in a picture") {

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packets that walk by tangents find what the host finds, bit for bit: near and far, warm and cold, inside and outside.
 #include "scan/tangent_scenes.hpp"
-#include "solid/shapes.hpp"
-#include "support/brute_distances.hpp"
 #include "support/product_device.cuh"
 
 #include <clearance/device.cuh>
-#include <clearance/make_model.hpp>
-#include <clearance/points/depth_image.hpp>
-#include <clearance/questions/distances.hpp>
-#include <clearance/volume/aabb.hpp>
-#include <clearance/volume/obb.hpp>
-#include <clearance/volume/sphere.hpp>
 
 namespace tangents_test {
 
@@ -20,22 +12,23 @@ using clearance::device, clearance::distances, clearance::host, clearance::place
 
 namespace {
 
-template <class Model, class There>
-void check(const Model& model, const There& there, const std::vector<Eigen::Isometry3d>& poses,
-           const std::vector<vec3>& points, verdict& v, const std::string& what) {
+const auto check = [](const auto& s, const auto& model, const std::vector<vec3>& points, const std::string& what,
+                      const auto&) {
+  verdict v;
   const device gpu;
-  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  const auto there = model.on(gpu);
   const auto cloud = gpu.copy_in(std::span<const vec3>(points));
   const clearance::device_buffer<real> distance(points.size(), gpu.id);
   const clearance::device_buffer<std::uint32_t> part(points.size(), gpu.id), primitive(points.size(), gpu.id);
   const clearance::device_buffer<clearance::point_counts> counts(1, gpu.id);
   for (const real d_max : {clearance::infinity, real(0.3), real(0), real(-0.01)}) {
-    const auto expected = ask(host{}, model, poses, point_span(points), distances{d_max, true});
+    const auto expected = ask(host{}, model, s.poses, placed{point_span(points), s.cloud_pose}, distances{d_max, true});
     for (const bool remembers : {false, true}) {
-      clearance::pointwise::device_points<typename There::view_type> walk(gpu, there.view(), nullptr, remembers);
+      clearance::pointwise::device_points<typename decltype(there)::view_type> walk(gpu, there.view(), nullptr,
+                                                                                    remembers);
       walk.by_tangents = true;
       for (int frame = 0; frame < (remembers ? 3 : 1); ++frame) {
-        walk.enqueue(poses, placed{point_span(cloud.data(), points.size()), here},
+        walk.enqueue(s.poses, placed{point_span(cloud.data(), points.size()), s.cloud_pose},
                      {distance.data(), part.data(), primitive.data()}, d_max, counts.data(),
                      clearance::frames::as_it_is{});
         clearance::point_distances found;
@@ -46,52 +39,17 @@ void check(const Model& model, const There& there, const std::vector<Eigen::Isom
       }
     }
   }
-}
-
-template <class V, class P>
-void all_scenes(std::uint32_t width, std::uint32_t leaf_size) {
-  verdict v;
-  const device gpu;
-  dice d(77 + width + leaf_size);
-  for (const auto& s : scenes<P>()) {
-    const clearance::build_options build{.width = width, .leaf_size = leaf_size};
-    const auto model = make_model<V>(s, build, clearance::wrapped{});
-    check(model, model.on(gpu), s.poses, patches(d, 1), v, s.name);
-  }
-}
+};
 
 }  // namespace
 
-TEST_CASE("By tangents to inner spheres, in every volume") {
-  all_scenes<clearance::sphere, inner_sphere>(8, 4);
-  all_scenes<clearance::aabb, inner_sphere>(4, 1);
-  all_scenes<clearance::obb, inner_sphere>(8, 2);
-}
-TEST_CASE("By tangents to triangles, in every volume") {
-  all_scenes<clearance::sphere, triangle>(8, 4);
-  all_scenes<clearance::aabb, triangle>(2, 9);
-  all_scenes<clearance::obb, triangle>(8, 4);
-}
-
+TEST_CASE("By tangents to inner spheres, in every volume") { by_tangents_to_spheres(check); }
+TEST_CASE("By tangents to triangles, in every volume") { by_tangents_to_triangles(check); }
 TEST_CASE("By tangents to solids that overlap and repeat, from inside and on their faces") {
-  verdict v;
-  dice d(41);
-  const device gpu;
-  const auto boxes = clearance::make_model<clearance::obb>(std::vector(3, clearance::close_mesh(shapes::cube(1))));
-  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-  auto points = patches(d, 2);
-  for (int k = 0; k < 3000; ++k)
-    points.push_back({real(d.below(9)) / 4 - 1, real(d.below(9)) / 4 - 1, real(k / 400) / 4 - 1});
-  const auto there = boxes.on(gpu);
-  check(boxes, there, {here, here, d.pose(0.5)}, points, v, "boxes, two of them the same");
+  by_tangents_to_solids(check);
 }
-
 TEST_CASE("By tangents to more parts than a warp has lanes, and than a kernel takes", "[slow]") {
-  verdict v;
-  dice d(42);
-  const scene<inner_sphere> s = many_parts(d);
-  const auto model = make_model<clearance::sphere>(s, {}, clearance::wrapped{});
-  check(model, model.on(device{}), s.poses, patches(d, 1.5), v, "200 parts");
+  by_tangents_to_many_parts(check);
 }
 
 TEST_CASE("A million points in rows, and a picture, walk by tangents of themselves") {

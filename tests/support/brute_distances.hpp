@@ -63,4 +63,22 @@ inline void require_same(const clearance::point_distances& found, const clearanc
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
 
+/// A scene's points, alone and with a depth image: what `on` says with each point's part and primitive, and without.
+template <class P, class On, class Model>
+void hold_distances(const On& on, const scene<P>& s, const Model& model, verdict& v) {
+  using clearance::ask, clearance::distances;
+  const sources<P> all(s);
+  const clearance::placed cloud{all.span, s.cloud_pose};
+  const clearance::placed image{all.raw, all.camera_pose};
+  for (const real d_max : {real(-0.05), real(0), real(0.2), real(3), clearance::infinity}) {
+    const std::string what = s.name + ", d_max " + std::to_string(d_max);
+    auto expected = brute_distances(s, all.span, s.cloud_pose, d_max, nothing_inside);
+    require_same(ask(on, model, s.poses, cloud, distances{d_max, true}), expected, v, what);
+    require_same(ask(on, model, s.poses, cloud, distances{d_max}), expected, v, what + ", distances alone");
+    append(expected, brute_distances(s, all.raw, all.camera_pose, d_max, nothing_inside));
+    require_same(ask(on, model, s.poses, std::tuple(cloud, image), distances{d_max, true}), expected, v,
+                 what + ", two clouds");
+  }
+}
+
 }  // namespace testing

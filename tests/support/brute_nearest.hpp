@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The k nearest points of each part by definition, and how a result differs from it.
+// The k nearest points of each part by definition, how a result differs from it, and what the laws ask.
 
 #include "support/brute_within.hpp"
 
@@ -32,5 +32,26 @@ inline void require_same(const clearance::nearest_k_result& found, const clearan
               what, ", pair ", i, ": point ", a.point, " at ", a.distance, " and not ", b.point, " at ", b.distance);
   }
 }
+
+/// For the laws of all questions.
+struct nearest_k_cases {
+  using question = clearance::nearest_k;
+
+  template <class P>
+  static std::vector<question> of_scene(const scene<P>& s) {
+    std::vector<question> all;
+    for (const std::size_t k : {1, 7, 400})
+      for (const real d_max : {real(-0.02), real(0.3), clearance::infinity}) all.push_back({k, d_max * real(s.size)});
+    return all;
+  }
+  template <class P>
+  static clearance::nearest_k_result by_definition(const scene<P>& s, const clouds& all, const question& q) {
+    return brute_nearest(s, all, q.k, real(q.d_max));
+  }
+  /// What is known of a frame is of use in some, and in some not.
+  static question of_frame(std::size_t number, std::size_t) { return {.k = number < 4 ? 500u : 3u}; }
+  static std::vector<question> refused() { return {{.k = 0}}; }
+  static void saw(const clearance::nearest_k_result&) {}
+};
 
 }  // namespace testing

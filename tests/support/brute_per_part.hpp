@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every part's distance to every point by definition, and how a result differs from it.
+// Every part's distance to every point by definition, how a result differs from it, and what the laws ask.
 
 #include "support/brute_distances.hpp"
 
@@ -40,5 +40,29 @@ inline void require_same(const clearance::part_distances& found, const clearance
             what, ": some distance differs");
   v.require(same_counts(found.counts, expected.counts), what, ": other counts");
 }
+
+/// For the laws of all questions.
+struct per_part_cases {
+  using question = clearance::distances_per_part;
+  std::size_t near = 0, far = 0;
+
+  template <class P>
+  static std::vector<question> of_scene(const scene<P>& s) {
+    return {{0}, {real(0.2 * s.size)}, {clearance::infinity}};
+  }
+  template <class P>
+  static clearance::part_distances by_definition(const scene<P>& s, const clouds& all, const question& q) {
+    return brute_per_part(s, all, real(q.d_max), nothing_inside);
+  }
+  static question of_frame(std::size_t number, std::size_t) { return {number % 2 == 0 ? 0.3f : clearance::infinity}; }
+  static std::vector<question> refused() { return {{clearance::not_a_number}}; }
+  void saw(const clearance::part_distances& r) {
+    for (const real distance : r.distance)
+      near += distance < clearance::infinity, far += distance == clearance::infinity;
+  }
+
+  static constexpr auto values = &clearance::part_distances::distance;
+  static std::vector<real> room(std::size_t parts, std::size_t points) { return std::vector(parts * points, real(-1)); }
+};
 
 }  // namespace testing

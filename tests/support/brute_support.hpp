@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// The nearest point that others confirm, by definition, and how a result differs from it.
+// The nearest point that others confirm, by definition, how a result differs from it, and what the laws ask.
 
 #include "support/brute_pairs.hpp"
 #include "support/product.hpp"
@@ -59,5 +59,29 @@ inline void require_same(const clearance::supported_distance& found, const clear
                 a.point == b.point && a.part == b.part && a.primitive == b.primitive,
             what, ": ", found.isolated, " are alone, and not ", expected.isolated);
 }
+
+/// For the laws of all questions.
+struct supported_cases {
+  using question = clearance::min_distance_supported;
+  std::size_t isolated = 0, confirmed = 0;
+
+  template <class P>
+  static std::vector<question> of_scene(const scene<P>& s) {
+    std::vector<question> all;
+    for (const std::uint32_t min_points : {1, 2, 4})
+      for (const double radius : {0.0, 0.05, 0.3})
+        all.push_back({.min_points = min_points, .radius = radius * s.size, .most = 1 << 14});
+    return all;
+  }
+  template <class P>
+  static clearance::supported_distance by_definition(const scene<P>& s, const clouds& all, const question& q) {
+    return brute_support(s, all, q);
+  }
+  static question of_frame(std::size_t number, std::size_t) {
+    return {.min_points = number % 2 == 1 ? 2u : 3u, .radius = 0.1};
+  }
+  static std::vector<question> refused() { return {{.min_points = 0}}; }
+  void saw(const clearance::supported_distance& r) { isolated += r.isolated, confirmed += r.cloud != clearance::none; }
+};
 
 }  // namespace testing

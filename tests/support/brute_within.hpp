@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points within a distance by definition, and how a result differs from it.
+// Points within a distance by definition, how a result differs from it, and what the laws ask.
 
 #include "support/brute_distances.hpp"
+#include "support/frames.hpp"
 
 #include <clearance/questions/within.hpp>
 
@@ -56,5 +57,55 @@ inline scene<inner_sphere> two_balls() {
   s.points = d.points(50000, 1);
   return s;
 }
+
+/// For the laws of all questions.
+struct within_cases {
+  using question = clearance::within;
+  std::size_t found = 0, longest = 0;
+
+  template <class P>
+  static std::vector<question> of_scene(const scene<P>& s) {
+    std::vector<question> all;
+    for (const real radius : {real(-0.02), real(0), real(0.1), clearance::infinity}) {
+      std::vector<double> own(s.parts.size(), radius * real(s.size));
+      all.push_back({{own[0]}});
+      own[0] *= 2;
+      all.push_back({own});
+    }
+    return all;
+  }
+  template <class P>
+  static clearance::within_result by_definition(const scene<P>& s, const clouds& all, const question& q) {
+    std::vector<real> radius(s.parts.size(), real(q.radius[0]));
+    if (q.radius.size() > 1) radius.assign(q.radius.begin(), q.radius.end());
+    return brute_within(s, all, radius);
+  }
+  /// That of frame 4 is a longer list than there is room for at first.
+  static question of_frame(std::size_t number, std::size_t parts) {
+    return {std::vector<double>(number % 2 == 1 ? parts : 1, number != 4 ? 0.3f : parts < 100 ? 10 : 0.8f)};
+  }
+  static std::vector<question> refused() { return {{{clearance::not_a_number}}, {{1, 1, 1, 1}}}; }
+  void saw(const clearance::within_result& r) { found += r.pairs.size(), longest = std::max(longest, r.pairs.size()); }
+
+  template <class On>
+  struct written {
+    const On& on;
+    typename On::template buffer<clearance::pair_distance> pairs;
+    typename On::template buffer<unsigned long long> count;
+    typename On::template buffer<clearance::point_counts> counts;
+
+    written(const On& on, std::size_t parts, std::size_t points)
+        : on(on),
+          pairs(room_on<clearance::pair_distance>(on, parts * points)),
+          count(room_on(on, 1, 77ull)),
+          counts(room_on<clearance::point_counts>(on, 1)) {}
+    question::out out() { return {pairs.data(), pairs.size(), count.data(), counts.data()}; }
+    void require(const clearance::within_result& expected, verdict& v, const std::string& what) const {
+      const auto n = on.copy_out(count)[0];
+      require_listed(on.copy_out(pairs.data(), std::min<std::size_t>(n, pairs.size())), n, expected, v, what);
+      v.require(on.copy_out(counts)[0].valid == expected.counts.valid, what, ": counts");
+    }
+  };
+};
 
 }  // namespace testing

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Points in zones by definition, and how a result differs from it.
+// Points in zones by definition, and how a result differs from it, and what the laws ask.
 
 #include "support/brute_distances.hpp"
 
@@ -45,5 +45,41 @@ inline void require_same(const clearance::zones_result& found, const clearance::
               b.first_point);
   }
 }
+
+/// For the laws of all questions.
+struct zones_cases {
+  using question = clearance::zones;
+  std::size_t counted = 0;
+
+  template <class P>
+  static std::vector<question> of_scene(const scene<P>& s) {
+    question all{.thresholds = {0, 0.05 * s.size, 0.5 * s.size}}, of_each{.thresholds = {}, .each_part = true};
+    for (std::size_t k = 1; k <= s.parts.size(); ++k)
+      for (const double share : {0.1, 0.3}) of_each.thresholds.push_back(share * double(k) * s.size);
+    return {all, of_each};
+  }
+  template <class P>
+  static clearance::zones_result by_definition(const scene<P>& s, const clouds& all, const question& q) {
+    std::vector<std::vector<double>> own;
+    const auto n = std::ptrdiff_t(q.per_part(s.parts.size()));
+    for (std::size_t k = 0; k < s.parts.size(); ++k) {
+      const auto its = q.thresholds.begin() + (q.each_part ? std::ptrdiff_t(k) * n : 0);
+      own.emplace_back(its, its + n);
+    }
+    return brute_zones(s, all, own);
+  }
+  static question of_frame(std::size_t number, std::size_t) {
+    return {.thresholds = number % 2 == 1 ? std::vector{0.02, 0.3} : std::vector{0.0, 0.05, 0.4}};
+  }
+  static std::vector<question> refused() { return {{.thresholds = {0.2, 0.1}}}; }
+  void saw(const clearance::zones_result& r) {
+    for (const auto& zone : r.zones) counted += zone.points;
+  }
+
+  static constexpr auto values = &clearance::zones_result::zones;
+  static std::vector<clearance::zone> room(std::size_t parts, std::size_t) {
+    return std::vector(3 * parts, clearance::zone{.points = 77});
+  }
+};
 
 }  // namespace testing

@@ -5,6 +5,7 @@
 #include "support/laws.hpp"
 #include "support/random.hpp"
 
+#include <clearance/compacted.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/masked.hpp>
 #include <clearance/points/point_span.hpp>
@@ -37,6 +38,27 @@ void for_each_compacted(const F& each) {
   std::vector<float> depths(64 * 48);
   for (float& z : depths) z = d.below(3) == 0 ? -float(clearance::infinity) : d.number(0.5, 4);
   of(clearance::depth_image(depths.data(), 64, 48, {60, 60, 31.5, 23.5}), "a depth image");
+}
+
+/// What is left of each is its valid points, in their order.
+template <class On>
+void check_compacted(const On& on) {
+  verdict v;
+  for_each_compacted([&](const auto& source, const auto& points, const auto& numbers, const std::string& what) {
+    const auto require = [&](const auto& there) {
+      const auto found = clearance::compacted(on, there);
+      v.require(found.numbers == numbers, what, ": ", found.numbers.size(), " are left, and not ", numbers.size());
+      v.require(found.points.size() == points.size() &&
+                    std::ranges::equal(found.points, points, [](vec3 a, vec3 b) { return same_bytes(a, b); }),
+                what, ": some point differs");
+    };
+    if constexpr (requires { source.labels; }) {  // they have to be where the backend reads them
+      const auto labels = on.copy_in(std::span<const clearance::point_label>(source.labels, source.size()));
+      require(clearance::masked(source.source, labels.data()));
+    } else {
+      require(source);
+    }
+  });
 }
 
 }  // namespace testing

@@ -48,4 +48,29 @@ struct moving_frames {
   auto model() const { return make_model<clearance::sphere>(s, {}, clearance::wrapped{}); }
 };
 
+/// A frame's points where `on` reads them.
+template <class On>
+struct frame_there {
+  std::vector<typename On::template buffer<vec3>> points;
+  clouds all;
+
+  frame_there(const On& on, const moving_frames& f) : all(f.here()) {
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      points.push_back(on.copy_in(std::span<const vec3>(f.points[c])));
+      all[c].source = clearance::point_span(points[c].data(), points[c].size());
+    }
+  }
+  std::size_t count() const {
+    std::size_t n = 0;
+    for (const auto& cloud : all) n += cloud.source.size();
+    return n;
+  }
+};
+
+/// Room for `n` values that `on` writes, each of which is `before` until then.
+template <class T, class On>
+typename On::template buffer<T> room_on(const On& on, std::size_t n, const T& before = {}) {
+  return on.copy_in(std::span<const T>(std::vector<T>(n, before)));
+}
+
 }  // namespace testing
