@@ -19,24 +19,6 @@
 
 namespace clearance::plan {
 
-/// What a device has for the blocks of a kernel.
-struct processors_of {
-  unsigned count = 0;
-  std::size_t shared = 0, of_block = 0;  ///< Bytes of shared memory: of a processor, and the most of a block.
-
-  explicit processors_of(const device& on)
-      : count(ask(on, cudaDevAttrMultiProcessorCount)),
-        shared(ask(on, cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
-        of_block(ask(on, cudaDevAttrMaxSharedMemoryPerBlockOptin)) {}
-
- private:
-  static unsigned ask(const device& on, cudaDeviceAttr what) {
-    int value = 0;
-    check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
-    return unsigned(value);
-  }
-};
-
 /// On a device: a tree over each cloud, and one block per configuration that searches it. It takes its memory from
 /// `memory`, a resource that hands out device memory, if you give one. It allocates only for frames larger than any
 /// before. Results stay valid until the next call.
@@ -54,7 +36,9 @@ class engine<device, PartView, Q> {
         resource_(memory),
         widened_(on, model, memory),
         model_(model),
-        processors_(on),
+        processors_(attribute(on, cudaDevAttrMultiProcessorCount)),
+        shared_(attribute(on, cudaDevAttrMaxSharedMemoryPerMultiprocessor)),
+        shared_of_block_(attribute(on, cudaDevAttrMaxSharedMemoryPerBlockOptin) - 1024),
         beside_(on),
         copies_(on, memory),
         memory_(on, memory),
@@ -71,23 +55,26 @@ class engine<device, PartView, Q> {
     const std::size_t configurations = count_configurations(model_.size(), poses.size());
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
-    place_by(configurations, [&](world_transform* there) { copy_in(staged_, there); });
+    place_by(configurations,
+             [&](world_transform* there) { copy(there, staged_.data(), staged_.size(), cudaMemcpyHostToDevice); });
   }
   /// Keeps the poses of joint vectors, one after another, which the device computes. Throws std::invalid_argument as
   /// joint_chain::count, and if the chain belongs to another robot. Not for a graph: it copies from host memory.
   void place(const joint_chain<device>& chain, std::span<const double> q) {
     const std::size_t configurations = chain.count(q);
     joints_.assign(q.begin(), q.end());
-    place_by(chain, configurations, [&] {
-      double* const there = memory_.template space<double>(joints_.size()).data();
-      copy_in(joints_, there);
-      return there;
-    });
+    values_.begin();
+    double* const there = values_.template space<double>(q.size()).data();
+    copy(there, joints_.data(), q.size(), cudaMemcpyHostToDevice);
+    place(chain, there, configurations);
   }
   /// The same for joint vectors in device memory. A vector that is not finite or beyond its limits makes poses that are
   /// not rigid.
   void place(const joint_chain<device>& chain, const double* q, std::size_t configurations) {
-    place_by(chain, configurations, [q] { return q; });
+    const auto view = checked_chain(chain, model_.size()).view();
+    staged_.clear();
+    place_by(configurations,
+             [&](world_transform* there) { on_.for_each(configurations * view.parts, place_links{view, q, there}); });
   }
 
   /// Enqueues a frame. Points in host memory are copied into buffers that it keeps.
@@ -116,10 +103,15 @@ class engine<device, PartView, Q> {
     point_counts points;
     if (!results.empty()) {
       counts found;
-      copy_out(results.data(), asked_.results, results.size());
-      copy_out(&found, counts_, 1);
+      copy(results.data(), asked_.results, results.size(), cudaMemcpyDeviceToHost);
+      copy(&found, counts_, 1, cudaMemcpyDeviceToHost);
       on_.wait();
-      if (found.lost != 0) named([&] { throw std::invalid_argument(not_rigid()); });
+      if (found.lost != 0)
+        named([&] {
+          throw std::invalid_argument(staged_.empty() ? "clearance: a joint vector is not finite or beyond its joint's "
+                                                        "limits, or moves a part out of the world"
+                                                      : "clearance: a pose is not rigid");
+        });
       scan::count(points, found.dropped.dropped, asked_.seen);
     }
     Q::take_counts(result_, points, model_.size());
@@ -168,7 +160,6 @@ class engine<device, PartView, Q> {
   static constexpr unsigned first_rounds = scan::has_interior<PartView> ? 192 : 128, first_of_part = 16,
                             next_rounds = first_rounds > 128 ? 48 : 24;
   static constexpr std::size_t most_shared = 48 * 1024;  ///< Shared memory that every block may have.
-  static constexpr std::size_t static_shared = 1024;     ///< Of that, what a kernel itself takes at most.
   static constexpr unsigned resident_threads = 1024;     ///< Per processor, as the kernel's registers allow.
   static constexpr std::size_t most_pieces = 1 << 18;    ///< That blocks may leave, and a few more.
 
@@ -176,18 +167,6 @@ class engine<device, PartView, Q> {
     scan::drop_counts dropped;
     std::uint32_t lost = 0;
   };
-
-  // Configurations are placed.
-
-  template <class Joints>
-  void place_by(const joint_chain<device>& chain, std::size_t configurations, const Joints& joints) {
-    const auto view = checked_chain(chain, model_.size()).view();
-    staged_.clear();
-    place_by(configurations, [&](world_transform* there) {
-      const double* const q = joints();
-      on_.for_each(configurations * view.parts, place_links{view, q, there});
-    });
-  }
 
   /// `fill(there)` enqueues the poses.
   template <class Fill>
@@ -236,8 +215,6 @@ class engine<device, PartView, Q> {
     if (left.size() < bytes) left = device_buffer<std::byte>(bytes, on_.id, resource_);
   }
 
-  // A frame is asked about.
-
   /// `here(source, cloud)` is a source that the device can read.
   template <class Clouds, class Here>
   void enqueue_frame(const Clouds& clouds, const Q& q, Here&& here) {
@@ -252,19 +229,14 @@ class engine<device, PartView, Q> {
     fill_bytes(counts_, 0, 1);
     asked_.foreseen = false;
     const bool foresee = by_margin && count_clouds(clouds) > 1;  // margins need the errors of all clouds
-    if (foresee) for_each_turn(clouds, [&](const auto&, const frames::turn&) { place_in(on_, point_span{}); });
+    if (foresee) for_each_turn(clouds, [&](const auto& given, const frames::turn&) { place_in(on_, given); });
     asked_.foreseen = foresee;
     for_each_turn(clouds, [&](const auto& given, const frames::turn& now) {
       const auto source = here(given, now.cloud);
       while (trees_.size() <= now.cloud) trees_.push_back(std::make_unique<cloud_tree::device_tree>(on_, resource_));
       beside_.fork();
       trees_[now.cloud]->build(source, &counts_->dropped);
-      beside_.join([&](const device& beside) {  // the tree does not need it
-        if constexpr (by_margin)
-          place_in(beside, point_span{});
-        else
-          place_in(beside, source);
-      });
+      beside_.join([&](const device& beside) { place_in(beside, source); });  // the tree does not need it
       const auto tree = trees_[now.cloud]->template view_of<std::remove_const_t<decltype(source)>>();
       if (model_.fields != nullptr)
         search_by_fields(tree);
@@ -301,8 +273,12 @@ class engine<device, PartView, Q> {
 
   template <point_source S>
   void place_in(const device& on, const S& source) const {
-    const unsigned blocks = (asked_.configurations - 1) / (128 / placing_lanes(asked_.part_count)) + 1;
-    on.launch(place_configurations<PartView, question_type, S>, blocks, 128, 0, asked_, source);
+    if constexpr (by_margin && !std::is_same_v<S, point_span>) {
+      place_in(on, point_span{});  // it reads no points
+    } else {
+      const unsigned blocks = (asked_.configurations - 1) / (128 / placing_lanes(asked_.part_count)) + 1;
+      on.launch(place_configurations<PartView, question_type, S>, blocks, 128, 0, asked_, source);
+    }
   }
 
   template <class Tree>
@@ -311,25 +287,21 @@ class engine<device, PartView, Q> {
     // As many threads as there is room for: more for each of few configurations, and where most end at once or a look
     // takes long. Stacks are as deep as the remaining room: a round that may take fewer pairs needs more rounds.
     const bool limited = asked_.question.limited();
-    unsigned threads = 64;
-    if (asked_.robots > 1)
-      threads = limited ? 128 : 64;
-    else if (limited || scan::has_interior<PartView>)
-      threads = 256;
-    else
-      threads = std::clamp(std::bit_floor(2048 * processors_.count / asked_.configurations), 128u, 256u);
+    unsigned threads = limited || scan::has_interior<PartView>
+                           ? 256
+                           : std::clamp(std::bit_floor(2048 * processors_ / asked_.configurations), 128u, 256u);
+    if (asked_.robots > 1) threads = limited ? 128 : 64;
     static_assert(room::bytes(32, room::least_depth(32)) <= most_shared, "a handle of a node must be smaller");
     while (room::bytes(threads, room::least_depth(threads)) > most_shared) threads /= 2;
     tree_arguments a{asked_};
-    a.depth = room::depth(threads, std::min(processors_.of_block - static_shared,
-                                            processors_.shared / (resident_threads / threads) - 2048));
+    a.depth = room::depth(threads, std::min(shared_of_block_, shared_ / (resident_threads / threads) - 2048));
     search(batch_kernel<tree_arguments, Tree>, tree, a, threads, room::bytes(threads, a.depth), first_rounds);
   }
   template <class Tree>
   void search_by_fields(const Tree& tree) {
     using room = field_room<PartView>;
     unsigned threads = asked_.robots > 1 || (scan::has_interior<PartView> && !asked_.question.limited()) ? 128 : 256;
-    while (room::bytes(threads) > processors_.of_block - static_shared) threads /= 2;
+    while (room::bytes(threads) > shared_of_block_) threads /= 2;
     search(field_kernel<field_arguments, Tree>, tree, field_arguments{asked_}, threads, room::bytes(threads),
            asked_.robots > 1 ? first_of_part : first_rounds);
   }
@@ -338,9 +310,9 @@ class engine<device, PartView, Q> {
   void search(Kernel* kernel, const Tree& tree, Arguments a, unsigned threads, std::size_t bytes, unsigned first) {
     {
       const device_guard guard(on_.id);
-      limits_.raise(reinterpret_cast<const void*>(kernel), processors_.of_block - static_shared);
+      limits_.raise(reinterpret_cast<const void*>(kernel), shared_of_block_);
     }
-    const unsigned at_once = processors_.count * (resident_threads / threads);
+    const unsigned at_once = processors_ * (resident_threads / threads);
     const auto launch = [&](unsigned blocks, unsigned rounds) {
       a.rounds = rounds == none ? none : rounds * 128 / threads;
       on_.launch(kernel, blocks, threads, bytes, a, tree);
@@ -370,19 +342,11 @@ class engine<device, PartView, Q> {
       on_.launch(tell_configurations<PartView, question_type>, (count + 127) / 128, 128, 0, asked_);
   }
 
-  // Memory, and messages.
-
   template <class T>
-  void copy_in(const std::vector<T>& from, T* to) const {
-    copy(to, from.data(), from.size() * sizeof(T), cudaMemcpyHostToDevice);
-  }
-  template <class T>
-  void copy_out(T* to, const T* from, std::size_t n) const {
-    copy(to, from, n * sizeof(T), cudaMemcpyDeviceToHost);
-  }
-  void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind) const {
+  void copy(T* to, const T* from, std::size_t n, cudaMemcpyKind kind) const {
+    if (n == 0) return;
     const device_guard guard(on_.id);
-    check_cuda(cudaMemcpyAsync(to, from, bytes, kind, on_.stream), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), kind, on_.stream), "cudaMemcpyAsync");
   }
   template <class T>
   void fill_bytes(T* what, int byte, std::size_t n) const {
@@ -395,16 +359,19 @@ class engine<device, PartView, Q> {
   void named(const F& f) const {
     plan::named(model_.size(), std::views::transform(staged_, to_isometry), f);
   }
-  const char* not_rigid() const {
-    if (!staged_.empty()) return "clearance: a pose is not rigid";
-    return "clearance: a joint vector is not finite or beyond its joint's limits, or moves a part out of the world";
+  static unsigned attribute(const device& on, cudaDeviceAttr what) {
+    int value = 0;
+    check_cuda(cudaDeviceGetAttribute(&value, what, on.id), "cudaDeviceGetAttribute");
+    return unsigned(value);
   }
 
   device on_;
   std::pmr::memory_resource* resource_;
   widened_model<device, PartView> widened_;
   model_view<PartView> model_;  ///< With the radii of the last call.
-  processors_of processors_;
+  unsigned processors_;
+  std::size_t shared_,
+      shared_of_block_;  ///< Bytes of a processor, and the most of a block besides what a kernel takes.
   side_stream beside_;
   raised_limits limits_;
   frames::kept_copies copies_;

@@ -32,8 +32,7 @@ struct asked_batch {
   const PartView* parts = nullptr;
   const field_view* fields = nullptr;
   std::uint32_t part_count = 0, configurations = 0;
-  std::uint32_t robots =
-      1;  ///< They take turns: configuration c is one of robot c % robots, each of `part_count` parts.
+  std::uint32_t robots = 1;                ///< Configuration c is one of robot c % robots, each of `part_count` parts.
   const world_transform* poses = nullptr;  ///< Per part.
   frames::turn now = {};
   world_transform world_from_cloud = {};
@@ -46,8 +45,8 @@ struct asked_batch {
   configuration_facts* facts = nullptr;
   memory_type* all = nullptr;
   margin_reach* near = nullptr;       ///< Per part, only for a question by margins.
-  distance_key* part_best = nullptr;  ///< Minima of parts, if they decide what is certain, or null;
-  const real* extra = nullptr;        ///< and how much farther each part is looked for: one per part of the robot.
+  distance_key* part_best = nullptr;  ///< Per part: minima of parts, used if `extra` is not null.
+  const real* extra = nullptr;        ///< Per part of the robot: how much farther it is looked for; or null.
   last_place* last = nullptr;
   cloud_tree::numbered_point* seeds = nullptr;
   typename Question::result_type* results = nullptr;
@@ -61,7 +60,7 @@ struct asked_batch {
   CLEARANCE_HD ball_bounds* bounds_of(std::uint32_t c) const { return bounds + std::size_t(c) * part_count; }
   CLEARANCE_HD margin_reach* near_of(std::uint32_t c) const { return near + std::size_t(c) * part_count; }
   CLEARANCE_HD of_parts minima_of(std::uint32_t c) const {
-    if (part_best == nullptr) return {};
+    if (extra == nullptr) return {};
     return {part_best + std::size_t(c) * part_count, extra};
   }
 
@@ -171,7 +170,7 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
   if (lane != 0) return;
   if (a.now.cloud == 0) {
     a.all[c] = a.question.start(rigid);
-    if (a.part_best != nullptr)
+    if (a.extra != nullptr)
       for (std::uint32_t k = 0; k < a.part_count; ++k) a.minima_of(c).best[k] = no_key;
   }
   a.facts[c] = facts;

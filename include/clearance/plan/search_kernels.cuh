@@ -109,6 +109,7 @@ struct batch_room {
 /// and puts the new pairs back in order. The order matters, because an early find prunes the others.
 template <class Search>
 struct block_search {
+  using search_type = Search;
   using pair = typename Search::pair;
   using room_type = batch_room<pair, typename Search::order_type>;
   using pieces_type = batch_pieces<pair>;
@@ -129,23 +130,28 @@ struct block_search {
   std::uint32_t count = 0, round = 0, next = 0, aside = 0;
   const std::uint32_t t = threadIdx.x, threads = blockDim.x;
 
-  /// Starts from the beginning, or with pairs that another block has left.
-  __device__ void start() {
+  /// Begins with a configuration, or with a piece of it that another block has left. If `Seeds`, what is known to be
+  /// near is looked at first.
+  template <bool Seeds, class Arguments>
+  __device__ void begin(const Arguments& a, std::uint32_t configuration, std::uint32_t piece) {
+    if (a.given.pieces != nullptr) {
+      const auto& left = a.given.pieces[piece];
+      count = left.count;
+      next = search.starts();
+      if (t < count) room.stack[t] = left.pairs[t];
+    } else if constexpr (Seeds) {
+      for (std::uint32_t j = t; j < 3 * a.part_count; j += threads)
+        if (const auto seed = a.seed(configuration, j); seed.number != none) search.seed(seed, j % a.part_count);
+    }
     if (t == 0) shared.made[0] = shared.made[1] = shared.aside = 0;
     __syncthreads();
   }
-  /// Of the points set aside, all are taken.
+  /// All points that were set aside have been looked at.
   __device__ void taken() {
     __syncthreads();
     if (t == 0) shared.aside = 0;
     aside = 0;
     __syncthreads();
-  }
-  __device__ void start(const typename pieces_type::piece& left) {
-    count = left.count;
-    next = search.starts();
-    if (t < count) room.stack[t] = left.pairs[t];
-    start();
   }
 
   /// Returns true when nothing is left, and false after `rounds` rounds, or when the room for what is set aside is half
@@ -253,45 +259,45 @@ struct block_search {
   }
 };
 
-/// One block per configuration, whose parts share its bound. A block leaves very long work to the next launch, after
-/// all configurations had their turn: the slowest of many takes twenty times as long as most.
-template <class Arguments, class Tree>
-__global__ void __launch_bounds__(256, 4)
-    batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
-  using question = typename Arguments::question_type;
-  using memory_type = typename Arguments::memory_type;
-  using search_type = tree_search<typename Arguments::body_type, Tree>;
-  using block_type = block_search<search_type>;
-  extern __shared__ distance_key memory[];
-  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
-  __shared__ typename block_type::words words;
-  memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
-  const std::uint32_t t = threadIdx.x;
+/// What a block of either kernel does: it searches for one configuration after another, whose parts share its bound, or
+/// goes on with pieces that blocks have left. A block leaves very long work to the next launch, after all
+/// configurations had their turn: the slowest of many takes twenty times as long as most. `search(configuration, number
+/// of the piece)` begins with `best`.
+template <class Arguments, class Search>
+__device__ void search_in_turn(const Arguments& a, typename Arguments::memory_type& best, const Search& search) {
   for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
        i += gridDim.x) {
     const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
     if (!a.facts[c].rigid) continue;
-    if (t == 0) best = a.all[c];
+    if (threadIdx.x == 0) best = a.all[c];
     __syncthreads();
-    const typename Arguments::body_type body = a.body(c, &best);
-    const search_type search{{body, tree, a.bounds_of(c)}};
-    block_type block{search, typename block_type::room_type(memory, blockDim.x, a.depth), words, a.depth};
-    if (a.given.pieces != nullptr) {
-      block.start(a.given.pieces[i]);
-    } else {
-      if constexpr (!question::by_margin && !Tree::of_balls)
-        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)
-          if (const auto seed = a.seed(c, j); seed.number != none) search.visit(seed, j % a.part_count);
-      block.start();
-    }
-    if (!block.go_on(a.rounds) && !block.leave_to(a.left, c)) block.go_on(none);
+    search(c, i);
     __syncthreads();
-    if (t != 0) continue;
+    if (threadIdx.x != 0) continue;
     if (a.given.pieces != nullptr)
-      question::add(a.all + c, best);
+      Arguments::question_type::add(a.all + c, best);
     else
       a.all[c] = best;
   }
+}
+
+/// One block per configuration searches by the trees of the parts.
+template <class Arguments, class Tree>
+__global__ void __launch_bounds__(256, 4)
+    batch_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
+  using memory_type = typename Arguments::memory_type;
+  using block_type = block_search<tree_search<typename Arguments::body_type, Tree>>;
+  extern __shared__ distance_key memory[];
+  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
+  __shared__ typename block_type::words words;
+  memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
+  search_in_turn(a, best, [&](std::uint32_t c, std::uint32_t piece) {
+    const auto body = a.body(c, &best);
+    const typename block_type::search_type search{{body, tree, a.bounds_of(c)}};
+    block_type block{search, typename block_type::room_type(memory, blockDim.x, a.depth), words, a.depth};
+    block.template begin<!Arguments::question_type::by_margin && !Tree::of_balls>(a, c, piece);
+    if (!block.go_on(a.rounds) && !block.leave_to(a.left, c)) block.go_on(none);
+  });
 }
 
 /// Shared memory of a block: a search's stack and what it makes in a round, the points that it has set aside and their
@@ -352,41 +358,25 @@ __device__ void look_at(const Search& search, const Room& room, std::uint32_t co
   }
 }
 
-/// One block per configuration, as batch_kernel.
+/// One block per configuration searches by the fields of the parts.
 template <class Arguments, class Tree>
 __global__ void __launch_bounds__(256, 4)
     field_kernel(const __grid_constant__ Arguments a, const __grid_constant__ Tree tree) {
   static_assert(Tree::fan <= 8 && Tree::tile <= 8, "one lane a child");
-  using question = typename Arguments::question_type;
   using memory_type = typename Arguments::memory_type;
-  using body_type = typename Arguments::body_type;
   using room_type = field_room<typename Arguments::part_type>;
-  using search_type = field_search<body_type, Tree>;
-  using block_type = block_search<search_type>;
+  using block_type = block_search<field_search<typename Arguments::body_type, Tree>>;
   extern __shared__ distance_key memory[];
   __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
   __shared__ typename block_type::words words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
-  const std::uint32_t t = threadIdx.x;
   const room_type room(memory, blockDim.x);
-  for (std::uint32_t i = blockIdx.x, count = a.given.pieces != nullptr ? a.given.size() : a.configurations; i < count;
-       i += gridDim.x) {
-    const std::uint32_t c = a.given.pieces != nullptr ? a.given.pieces[i].configuration : i;
-    if (!a.facts[c].rigid) continue;
-    if (t == 0) best = a.all[c];
-    __syncthreads();
-    const body_type body = a.body(c, &best);
-    const search_type search{
+  search_in_turn(a, best, [&](std::uint32_t c, std::uint32_t piece) {
+    const auto body = a.body(c, &best);
+    const typename block_type::search_type search{
         {body, tree, a.bounds_of(c)}, a.fields + a.first_part(c), searched_levels(tree, a.part_count, blockDim.x)};
     block_type block{search, room.stack, words, room_type::depth(blockDim.x), room.aside};
-    if (a.given.pieces != nullptr) {
-      block.start(a.given.pieces[i]);
-    } else {
-      if constexpr (!question::by_margin)
-        for (std::uint32_t j = t; j < 3 * a.part_count; j += blockDim.x)
-          if (const auto seed = a.seed(c, j); seed.number != none) search.seed(seed, j % a.part_count);
-      block.start();
-    }
+    block.template begin<!Arguments::question_type::by_margin>(a, c, piece);
     for (std::uint32_t rounds = a.rounds;;) {
       const bool done = block.go_on(rounds);
       if (block.aside != 0) {
@@ -398,13 +388,7 @@ __global__ void __launch_bounds__(256, 4)
       if (block.count == 0 || block.leave_to(a.left, c)) break;
       rounds = none;
     }
-    __syncthreads();
-    if (t != 0) continue;
-    if (a.given.pieces != nullptr)
-      question::add(a.all + c, best);
-    else
-      a.all[c] = best;
-  }
+  });
 }
 
 }  // namespace clearance::plan

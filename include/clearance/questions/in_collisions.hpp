@@ -86,7 +86,8 @@ struct in_collisions {
   void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                const Clouds& clouds, result& all, std::size_t c) const {
     const collision_result one = ask(on, model, poses, clouds, in_collision{margins});
-    all.of[c] = one.state, all.counts = one.counts;
+    all.of[c] = one.state;
+    all.counts = one.counts;
   }
 };
 

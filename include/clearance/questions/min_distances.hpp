@@ -106,7 +106,10 @@ struct min_distances {
   template <class PartView>
   using joined = plan::joined_minima<min_distances, PartView>;
 
-  void check(std::size_t parts) const { checked(parts), check_radii(radii, parts); }
+  void check(std::size_t parts) const {
+    checked(parts);
+    check_radii(radii, parts);
+  }
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
   static std::vector<min_distance_result>& results(result& all) { return all.of; }
   static void take_counts(result&, const point_counts&, std::size_t) {}
