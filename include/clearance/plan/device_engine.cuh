@@ -77,20 +77,20 @@ class engine<device, PartView, Q> {
              [&](world_transform* there) { on_.for_each(configurations * view.parts, place_links{view, q, there}); });
   }
 
-  /// Enqueues a frame. Points in host memory are copied into buffers that it keeps.
+  /// Enqueues a frame about configurations that are placed first. Points in host memory are copied into buffers that it
+  /// keeps.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
     place(poses);
     begin_placed(clouds, q);
   }
-  /// The device computes the poses.
+  /// Enqueues a frame about joint vectors, whose poses the device computes.
   template <class Clouds>
   void begin_chain(const joint_chain<device>& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) {
     place(chain, joints);
     begin_placed(clouds, q);
   }
-  /// About the placed configurations, against a new frame. Throws std::logic_error if the last ones could not be
-  /// placed.
+  /// Enqueues a frame about the placed configurations. Throws std::logic_error if the last ones could not be placed.
   template <class Clouds>
   void begin_placed(const Clouds& clouds, const Q& q) {
     named([&] { enqueue_frame(clouds, q, copies_); });
@@ -215,7 +215,7 @@ class engine<device, PartView, Q> {
     if (left.size() < bytes) left = device_buffer<std::byte>(bytes, on_.id, resource_);
   }
 
-  /// `here(source, cloud)` is a source that the device can read.
+  /// Enqueues all kernels of a frame. `here(source, cloud)` is a source that the device can read.
   template <class Clouds, class Here>
   void enqueue_frame(const Clouds& clouds, const Q& q, Here&& here) {
     static_assert(explain_clouds<Clouds>());
@@ -245,7 +245,7 @@ class engine<device, PartView, Q> {
       write_results(source);
     });
   }
-  /// Margins, or how much farther each part is looked for.
+  /// Enqueues copies of the margins, or of how much farther each part is looked for.
   template <class Clouds>
   void put_values(const Clouds& clouds) {
     values_.begin();
@@ -370,8 +370,8 @@ class engine<device, PartView, Q> {
   widened_model<device, PartView> widened_;
   model_view<PartView> model_;  ///< With the radii of the last call.
   unsigned processors_;
-  std::size_t shared_,
-      shared_of_block_;  ///< Bytes of a processor, and the most of a block besides what a kernel takes.
+  std::size_t shared_;           ///< Bytes of shared memory: of a processor,
+  std::size_t shared_of_block_;  ///< and the most of a block, less what a kernel takes itself.
   side_stream beside_;
   raised_limits limits_;
   frames::kept_copies copies_;
@@ -379,11 +379,12 @@ class engine<device, PartView, Q> {
   asked_type asked_;    ///< What kernels are asked: where configurations lie, and the last frame.
   bool placed_ = true;  ///< Could the last configurations be placed?
   counts* counts_ = nullptr;
-  backends::kept_memory<device> memory_, values_;  ///< Of placed configurations, and of a frame.
-  device_buffer<std::byte> left_[2];               ///< Pieces that blocks leave, and leave again.
-  std::vector<world_transform> staged_;            ///< Poses and joint vectors on their way.
-  std::vector<double> joints_;
-  std::vector<real> extra_;  ///< See extra_reaches.
+  backends::kept_memory<device> memory_;  ///< Of placed configurations,
+  backends::kept_memory<device> values_;  ///< and of a frame.
+  device_buffer<std::byte> left_[2];      ///< Pieces that blocks leave, and leave again.
+  std::vector<world_transform> staged_;   ///< Poses on their way,
+  std::vector<double> joints_;            ///< and joint vectors.
+  std::vector<real> extra_;               ///< See extra_reaches.
   typename Q::result result_;
 };
 

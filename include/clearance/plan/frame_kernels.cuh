@@ -85,7 +85,7 @@ struct asked_batch {
   }
 };
 
-/// And how blocks search. `Pair` is what a block's stack holds.
+/// What a kernel that searches is asked, and how its blocks do it. `Pair` is what a block's stack holds.
 template <class PartView, class Question, class Pair>
 struct batch_arguments : asked_batch<PartView, Question> {
   using pair_type = Pair;
@@ -122,8 +122,8 @@ struct walk_by_warp {
 /// So many lanes place a configuration. A few for each of several parts were slower than a warp.
 CLEARANCE_HD constexpr std::uint32_t placing_lanes(std::uint32_t parts) { return parts == 1 ? 1 : 32; }
 
-/// Does what a host does with poses before a search, and finds where each search begins. A warp per
-/// configuration, or a lane if that has one part.
+/// Places the parts of each configuration in a cloud, and finds where its search begins. A warp per configuration, or
+/// a lane if that has one part.
 template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128) place_configurations(const __grid_constant__ asked_batch<PartView, Question> a,
                                                             const __grid_constant__ Source source) {

@@ -107,7 +107,7 @@ struct node_pair {
   bool whole;          ///< Points may be inside the part's solid: `node` stays the root.
 };
 
-/// By the trees of the parts.
+/// The search by the trees of the parts: the larger of a pair's two nodes is opened.
 template <class Body, class Tree>
 struct tree_search : points_search<Body, Tree> {
   using search = points_search<Body, Tree>;
@@ -317,8 +317,8 @@ CLEARANCE_HD std::uint32_t searched_levels(const Tree& tree, std::uint32_t parts
   return levels;
 }
 
-/// By the fields of the parts. Points are left for an exact search at the end: by then nearly all of them are known to
-/// be too far.
+/// The search by the fields of the parts. Points are left for an exact search at the end: by then nearly all of them
+/// are known to be too far.
 template <class Body, class Tree>
 struct field_search : points_search<Body, Tree> {
   using search = points_search<Body, Tree>;
