@@ -52,7 +52,6 @@ struct points_search {
 
   /// How near part `k` must be.
   CLEARANCE_HD real reach(std::uint32_t k) const { return body.answer.reach(k); }
-
   template <class Point>
   CLEARANCE_HD void visit(const Point& p, std::uint32_t k) const {
     body.visit(element_less(p, body.origin), body.first + p.number, k);
@@ -135,7 +134,6 @@ struct tree_search : points_search<Body, Tree> {
          .whole = solid};
     return examine(p);
   }
-
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
     return p.by_points ? tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at)
                        : body.parts[p.part].tree.size(p.node);
@@ -334,7 +332,6 @@ struct field_search : points_search<Body, Tree> {
     p = {-infinity, i % top, i / top, std::uint8_t(levels), solid};
     return examine(p);
   }
-
   CLEARANCE_HD std::uint32_t children(const pair& p) const {
     return p.level == 0 ? 1 : tree.end_below(p.level - 1, p.at) - tree.first_below(p.level - 1, p.at);
   }
