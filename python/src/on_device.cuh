@@ -80,7 +80,7 @@ class prepared_on_device final : public clearance::any::prepared<Asker, Backend,
     for (const Eigen::Isometry3d& pose : poses) {
       clearance::world_transform its(pose);
       if (!clearance::make_rigid(its))
-        clearance::detail::named(parts_, poses, [] { throw std::invalid_argument("clearance: a pose is not rigid"); });
+        clearance::plan::named(parts_, poses, [] { throw std::invalid_argument("clearance: a pose is not rigid"); });
     }
   }
 

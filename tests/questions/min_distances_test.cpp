@@ -274,6 +274,8 @@ TEST_CASE("The monitor of a trajectory: every frame is new, and its answer does 
     const auto cloud = d.points(points, 2);
     const auto one = [&](auto own) { return ask(host{}, model, own, cloud, min_distance{}); };
     require_same(query(poses, cloud), poses, s.parts.size(), infinity, one, v, std::to_string(points) + " points");
+    query.begin(poses, cloud, min_distances{});
+    require_same(query.finish(), poses, s.parts.size(), infinity, one, v, std::to_string(points) + " points, begun");
     if (points == 10) poses.resize(poses.size() / 2 / s.parts.size() * s.parts.size());
     if (points == 2000) query.forget();
   }

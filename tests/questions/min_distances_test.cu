@@ -143,8 +143,10 @@ TEST_CASE("A trajectory among a crowd is watched on a device, from frame to fram
   for (int frame = 0; frame < 3; ++frame) {
     for (vec3& p : s.points) p.x += d.number(-0.001, 0.001);
     if (frame == 2) s.points.resize(1000);
-    require_results(query(point_span(s.points)).of, on_host(poses, point_span(s.points)).of, v,
-                    "frame " + std::to_string(frame));
+    const auto expected = on_host(poses, point_span(s.points)).of;
+    require_results(query(point_span(s.points)).of, expected, v, "frame " + std::to_string(frame));
+    query.begin_placed(point_span(s.points), min_distances{});
+    require_results(query.finish().of, expected, v, "frame " + std::to_string(frame) + ", begun");
   }
 }
 

@@ -25,7 +25,7 @@ struct in_collisions_result {
   /// each trajectory, counted from its beginning. Throws std::invalid_argument if they are not whole trajectories of
   /// `horizon` configurations, std::out_of_range if there is no trajectory i.
   std::span<const state> trajectory(std::size_t i, std::size_t horizon) const& {
-    return detail::trajectory_of(std::span(of), i, horizon);
+    return plan::trajectory_of(std::span(of), i, horizon);
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<state> trajectory(std::size_t i, std::size_t horizon) const&& {
@@ -33,7 +33,7 @@ struct in_collisions_result {
     return {its.begin(), its.end()};
   }
   std::vector<std::size_t> first_not_free(std::size_t horizon) const {
-    return detail::first_of_each(std::span(of), horizon, first_of);
+    return plan::first_of_each(std::span(of), horizon, first_of);
   }
 
  private:
@@ -86,7 +86,8 @@ struct in_collisions {
   void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
                const Clouds& clouds, result& all, std::size_t c) const {
     const collision_result one = ask(on, model, poses, clouds, in_collision{margins});
-    all.of[c] = one.state, all.counts = one.counts;
+    all.of[c] = one.state;
+    all.counts = one.counts;
   }
 };
 

@@ -31,7 +31,7 @@ struct min_distances_result {
   /// std::invalid_argument if they are not whole trajectories of `horizon` configurations, std::out_of_range if there
   /// is no trajectory i.
   std::span<const min_distance_result> trajectory(std::size_t i, std::size_t horizon) const& {
-    return detail::trajectory_of(std::span(of), i, horizon);
+    return plan::trajectory_of(std::span(of), i, horizon);
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<min_distance_result> trajectory(std::size_t i, std::size_t horizon) const&& {
@@ -41,7 +41,7 @@ struct min_distances_result {
   /// `first_below` of each trajectory, counted from its beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
     check(margin);
-    return detail::first_of_each(std::span(of), horizon, [&](auto its) { return first_of(its, margin); });
+    return plan::first_of_each(std::span(of), horizon, [&](auto its) { return first_of(its, margin); });
   }
 
  private:
@@ -106,7 +106,10 @@ struct min_distances {
   template <class PartView>
   using joined = plan::joined_minima<min_distances, PartView>;
 
-  void check(std::size_t parts) const { checked(parts), check_radii(radii, parts); }
+  void check(std::size_t parts) const {
+    checked(parts);
+    check_radii(radii, parts);
+  }
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
   static std::vector<min_distance_result>& results(result& all) { return all.of; }
   static void take_counts(result&, const point_counts&, std::size_t) {}

@@ -41,7 +41,10 @@ struct min_distances_per_part {
   template <class PartView>
   using joined = plan::joined_minima<min_distances_per_part, PartView>;
 
-  void check(std::size_t parts) const { checked(parts), check_radii(radii, parts); }
+  void check(std::size_t parts) const {
+    checked(parts);
+    check_radii(radii, parts);
+  }
   searched checked(std::size_t parts) const { return min_distances{d_max}.checked(parts); }
   static std::vector<min_distance_result>& results(result& r) { return r.all; }
   static void take_counts(result& r, const point_counts&, std::size_t parts) { r.parts = parts; }
