@@ -5,6 +5,7 @@
 #include <clearance/backends/device.cuh>
 #include <clearance/backends/one_call.cuh>
 #include <clearance/backends/own_stream.cuh>
+#include <clearance/backends/readback.cuh>
 #include <clearance/cloud_tree/device_tree.cuh>
 #include <clearance/frames/readable.cuh>
 #include <clearance/plan/configurations.hpp>
@@ -30,6 +31,9 @@ class engine<device, PartView, Q> {
   static constexpr bool by_margin = question_type::by_margin;
 
  public:
+  /// Poses in pageable memory are copied before the first kernel starts.
+  static constexpr bool waits = true;
+
   /// Throws std::invalid_argument if a tree is too deep for a thread's stack.
   engine(const device& on, const model_view<PartView>& model, std::pmr::memory_resource* memory = nullptr)
       : on_(on),
@@ -42,7 +46,8 @@ class engine<device, PartView, Q> {
         beside_(on),
         copies_(on, memory),
         memory_(on, memory),
-        values_(on, memory) {
+        values_(on, memory),
+        back_(on, memory) {
     check_stack<near_first>(model.depth, model.width);
     if (Q::each_part) asked_.robots = std::max(std::uint32_t(model.size()), 1u);
     asked_.part_count = std::uint32_t(model.size()) / asked_.robots;
@@ -55,8 +60,7 @@ class engine<device, PartView, Q> {
     const std::size_t configurations = count_configurations(model_.size(), poses.size());
     staged_.clear();
     for (const Eigen::Isometry3d& pose : poses) staged_.emplace_back(pose);
-    place_by(configurations,
-             [&](world_transform* there) { copy(there, staged_.data(), staged_.size(), cudaMemcpyHostToDevice); });
+    place_by(configurations, [&](world_transform* there) { copy(there, staged_.data(), staged_.size()); });
   }
   /// Keeps the poses of joint vectors, one after another, which the device computes. Throws std::invalid_argument as
   /// joint_chain::count, and if the chain belongs to another robot. Not for a graph: it copies from host memory.
@@ -65,7 +69,7 @@ class engine<device, PartView, Q> {
     joints_.assign(q.begin(), q.end());
     values_.begin();
     double* const there = values_.template space<double>(q.size()).data();
-    copy(there, joints_.data(), q.size(), cudaMemcpyHostToDevice);
+    copy(there, joints_.data(), q.size());
     place(chain, there, configurations);
   }
   /// The same for joint vectors in device memory. A vector that is not finite or beyond its limits makes poses that are
@@ -97,15 +101,14 @@ class engine<device, PartView, Q> {
   }
 
   /// Waits for the frame that was begun. Throws std::invalid_argument if a pose is not rigid.
-  const typename Q::result& finish() {
+  typename Q::result& finish() {
     auto& results = Q::results(result_);
-    results.resize(asked_.configurations);
+    results.clear();
     point_counts points;
-    if (!results.empty()) {
+    if (asked_.configurations != 0) {
       counts found;
-      copy(results.data(), asked_.results, results.size(), cudaMemcpyDeviceToHost);
-      copy(&found, counts_, 1, cudaMemcpyDeviceToHost);
-      on_.wait();
+      back_(backends::read_array<result_type>{results, asked_.results, asked_.configurations},
+            backends::read_value<counts>{found, counts_});
       if (found.lost != 0)
         named([&] {
           throw std::invalid_argument(staged_.empty() ? "clearance: a joint vector is not finite or beyond its joint's "
@@ -116,23 +119,6 @@ class engine<device, PartView, Q> {
     }
     Q::take_counts(result_, points, model_.size());
     return result_;
-  }
-
-  template <class Clouds>
-  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    begin(poses, clouds, q);
-    return finish();
-  }
-  template <class Clouds>
-  const typename Q::result& run_chain(const joint_chain<device>& chain, std::span<const double> joints,
-                                      const Clouds& clouds, const Q& q) {
-    begin_chain(chain, joints, clouds, q);
-    return finish();
-  }
-  template <class Clouds>
-  const typename Q::result& run_placed(const Clouds& clouds, const Q& q) {
-    begin_placed(clouds, q);
-    return finish();
   }
 
   /// Enqueues a frame of the placed configurations, and returns device memory with one result per configuration, or
@@ -343,10 +329,10 @@ class engine<device, PartView, Q> {
   }
 
   template <class T>
-  void copy(T* to, const T* from, std::size_t n, cudaMemcpyKind kind) const {
+  void copy(T* to, const T* from, std::size_t n) const {
     if (n == 0) return;
     const device_guard guard(on_.id);
-    check_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), kind, on_.stream), "cudaMemcpyAsync");
+    check_cuda(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyHostToDevice, on_.stream), "cudaMemcpyAsync");
   }
   template <class T>
   void fill_bytes(T* what, int byte, std::size_t n) const {
@@ -381,10 +367,11 @@ class engine<device, PartView, Q> {
   counts* counts_ = nullptr;
   backends::kept_memory<device> memory_;  ///< Of placed configurations,
   backends::kept_memory<device> values_;  ///< and of a frame.
-  device_buffer<std::byte> left_[2];      ///< Pieces that blocks leave, and leave again.
-  std::vector<world_transform> staged_;   ///< Poses on their way,
-  std::vector<double> joints_;            ///< and joint vectors.
-  std::vector<real> extra_;               ///< See extra_reaches.
+  backends::readback<device> back_;
+  device_buffer<std::byte> left_[2];     ///< Pieces that blocks leave, and leave again.
+  std::vector<world_transform> staged_;  ///< Poses on their way,
+  std::vector<double> joints_;           ///< and joint vectors.
+  std::vector<real> extra_;              ///< See extra_reaches.
   typename Q::result result_;
 };
 

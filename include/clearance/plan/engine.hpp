@@ -43,19 +43,7 @@ class engine {
   void begin_chain(const joint_chain<host>& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) {
     begin(checked_chain(chain, model_.size()).poses(joints), clouds, q);
   }
-  const typename Q::result& finish() const { return result_; }
-
-  template <class Clouds>
-  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    begin(poses, clouds, q);
-    return finish();
-  }
-  template <class Clouds>
-  const typename Q::result& run_chain(const joint_chain<host>& chain, std::span<const double> joints,
-                                      const Clouds& clouds, const Q& q) {
-    begin_chain(chain, joints, clouds, q);
-    return finish();
-  }
+  typename Q::result& finish() { return result_; }
 
   void forget() const {}
 
@@ -134,19 +122,7 @@ class engine<host, PartView, Q> {
   void begin_chain(const joint_chain<host>& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) {
     begin(checked_chain(chain, model_.size()).poses(joints), clouds, q);
   }
-  const typename Q::result& finish() const { return result_; }
-
-  template <class Clouds>
-  const typename Q::result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    begin(poses, clouds, q);
-    return finish();
-  }
-  template <class Clouds>
-  const typename Q::result& run_chain(const joint_chain<host>& chain, std::span<const double> joints,
-                                      const Clouds& clouds, const Q& q) {
-    begin_chain(chain, joints, clouds, q);
-    return finish();
-  }
+  typename Q::result& finish() { return result_; }
 
   /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() { last_.clear(); }

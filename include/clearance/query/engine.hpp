@@ -32,8 +32,8 @@ concept waiting_engine = E::waits;
 template <class E>
 concept bounded_engine = requires(E its, real within) { its.bound_by(within); };
 
-/// An engine that keeps the poses of many configurations where it runs: `place(poses)`, and then `run_placed(clouds,
-/// q)` and `start_placed(clouds, q)`.
+/// An engine that keeps the poses of many configurations where it runs: `place(poses)`, and then `begin_placed(clouds,
+/// q)` or `start_placed(clouds, q)`.
 template <class E>
 concept placing_engine = requires(E its, std::span<const Eigen::Isometry3d> poses) { its.place(poses); };
 

@@ -143,10 +143,7 @@ class callable {
     static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
     const in_use::call only(used_);
     self().begin(as_poses(poses), clouds, q);
-    if constexpr (std::is_reference_v<decltype(self().finish())>)
-      return static_cast<const typename Q::result&>(self().finish());
-    else
-      return self().finish();
+    return finished();
   }
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds) & {
@@ -168,7 +165,8 @@ class callable {
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) & {
     static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
     const in_use::call only(used_);
-    return self().run_chain(chain, joints, clouds, q);
+    self().begin_chain(chain, joints, clouds, q);
+    return finished();
   }
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
@@ -187,10 +185,11 @@ class callable {
   /// On a device: about the configurations that were placed.
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds, const Q& q) & {
-    constexpr bool places = requires(Query& its) { its.run_placed(clouds, q); };
+    constexpr bool places = requires(Query& its) { its.begin_placed(clouds, q); };
     static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
     const in_use::call only(used_);
-    if constexpr (places) return self().run_placed(clouds, q);
+    if constexpr (places) self().begin_placed(clouds, q);
+    return finished();
   }
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds) & {
@@ -204,6 +203,13 @@ class callable {
 
  private:
   Query& self() { return static_cast<Query&>(*this); }
+  /// The result of the frame that began; where the engine keeps it, a reference.
+  decltype(auto) finished() {
+    if constexpr (std::is_reference_v<decltype(self().finish())>)
+      return static_cast<const typename Q::result&>(self().finish());
+    else
+      return self().finish();
+  }
 
   Q asked_;
   in_use used_;
