@@ -80,8 +80,11 @@ Interface& backend_robot::prepared(const typename Interface::question_type& q, b
   if (!kept) {
     const auto make = maker<Interface>::on[on_device_];
     kept = std::shared_ptr<Interface>(make(other_volume ? memory_->other() : memory_->usual(), other_volume, q));
-    build = memory_->build, upload = memory_->upload;
-    without_field = memory_->without_field, fields = memory_->fields, fields_cached = memory_->fields_cached;
+    build = memory_->build;
+    upload = memory_->upload;
+    without_field = memory_->without_field;
+    fields = memory_->fields;
+    fields_cached = memory_->fields_cached;
   }
   return *static_cast<Interface*>(kept.get());
 }
@@ -212,7 +215,9 @@ motion_clearance_result hidden_way(const Ask& ask, std::span<const part_facts> f
   };
   auto found = clearance::detail::over_motion(least, facts, way, images, options);
   if (nothing_hides) {  // whatever the robot does
-    found.state = state::free, found.lower = infinity, found.settled = true;
+    found.state = state::free;
+    found.lower = infinity;
+    found.settled = true;
     return found;
   }
   if (found.state == state::collision) found.state = state::unknown;  // nobody knows what is there

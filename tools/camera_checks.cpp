@@ -43,7 +43,10 @@ void check_image_sizes(std::span<const cloud_options> clouds) {
     if (first && *size != expected)
       throw usage_error("--intrinsics", "are of one size of images, and " + words(first->file, expected) + ", but " +
                                             words(cloud.file, *size));
-    if (!first) first = &cloud, expected = *size;
+    if (!first) {
+      first = &cloud;
+      expected = *size;
+    }
   }
 }
 

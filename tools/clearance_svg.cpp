@@ -55,13 +55,17 @@ double top_of(const min_distance_result& r) {
 axes around(const svg_frames& drawn, std::optional<double> margin) {
   axes made{0, 0, 0, drawn.seen.size()};
   const auto hold = [&](double metres) {
-    if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
+    if (std::isfinite(metres)) {
+      made.low = std::min(made.low, metres);
+      made.high = std::max(made.high, metres);
+    }
   };
   std::vector<double> tops;
   for (const auto* some : {&drawn.seen, &drawn.certain, &drawn.unseen})
     for (const min_distance_result& r : *some) {
       if (r.state == state::no_data) continue;
-      hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
+      hold(std::min(0.0, double(r.distance)));
+      hold(std::min(0.0, double(r.lower)));
       if (const double above = top_of(r); above > 0) tops.push_back(above);
     }
   std::sort(tops.begin(), tops.end());

@@ -55,13 +55,16 @@ clearance::any_noise sensor_of(const std::string& option, const std::string& tex
   const auto of = [&](std::size_t count, const char* what) { return numbers(option, rest, count, kind + ':' + what); };
   if (kind == "stereo") {
     const auto v = of(3, "F,B,S (focal length in pixels, baseline in m, deviation of a disparity in pixels)");
-    sensor.kind = clearance::noise_kind::stereo, sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
+    sensor.kind = clearance::noise_kind::stereo;
+    sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
   } else if (kind == "tof") {
     const auto v = of(2, "C,S (m, and m for each square metre)");
-    sensor.kind = clearance::noise_kind::tof, sensor.tof = {real(v[0]), real(v[1])};
+    sensor.kind = clearance::noise_kind::tof;
+    sensor.tof = {real(v[0]), real(v[1])};
   } else if (kind == "lidar") {
     const auto v = of(2, "C,S (m, and m for each metre)");
-    sensor.kind = clearance::noise_kind::lidar, sensor.lidar = {real(v[0]), real(v[1])};
+    sensor.kind = clearance::noise_kind::lidar;
+    sensor.lidar = {real(v[0]), real(v[1])};
   } else if (text == "kinect") {
     sensor.kind = clearance::noise_kind::kinect;
   } else {
@@ -104,7 +107,8 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     const auto v = numbers(option, text, 2, "DT,DTHETA");
     if (!(v[0] >= 0 && v[0] <= 1e15 && v[1] >= 0 && v[1] <= 1e15))
       throw usage_error(option, "needs 0 or more (metres, and radians)");
-    cloud.off.shift = v[0], cloud.off.turn = v[1];
+    cloud.off.shift = v[0];
+    cloud.off.turn = v[1];
   }
   if (option == "--use-viewpoint") cloud.use_viewpoint = true;
   if (option == "--zero-is-missing") cloud.zero_is_missing = true;

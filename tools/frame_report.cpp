@@ -14,7 +14,11 @@ std::string part_columns(const frame_report& report) {
     const auto column = [&](const char* what) { out += ',' + csv_word((*report.bodies)[k].name + what); };
     column(" distance");
     if (report.certain) column(" certain_lower");
-    if (report.unseen) column(" unseen"), column(" unseen_lower"), column(" out_of_view");
+    if (report.unseen) {
+      column(" unseen");
+      column(" unseen_lower");
+      column(" out_of_view");
+    }
   }
   return out;
 }
@@ -32,7 +36,9 @@ std::string part_cells(const frame_report& report) {
     const unseen_result& unseen = *report.unseen->found;
     const unseen_part its = k < unseen.parts.size() ? unseen.parts[k] : unseen_part{};
     const bool any = k < unseen.parts.size(), known = any && unseen.all.state != state::no_data;
-    cell(its.distance, known), cell(its.lower, known), cell(its.out_of_view, any);
+    cell(its.distance, known);
+    cell(its.lower, known);
+    cell(its.out_of_view, any);
   }
   return out;
 }
@@ -41,7 +47,10 @@ std::string part_cells(const frame_report& report) {
 
 std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
-  if (report.stamped) out["stamp"] = report.stamped->stamp, out["joints_off"] = report.stamped->joints.off;
+  if (report.stamped) {
+    out["stamp"] = report.stamped->stamp;
+    out["joints_off"] = report.stamped->joints.off;
+  }
   out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
   out["points"] = counts(report.found.result);
   out["upload_us"] = microseconds(report.upload);

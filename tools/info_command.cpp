@@ -71,7 +71,8 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
     options.gltf_up = up;
     if (visual) options.geometry = clearance::io::robot_geometry::visual;
     const auto robot = clearance::io::load_robot(file, options);
-    parts = robot.parts(), notes = robot.notes();
+    parts = robot.parts();
+    notes = robot.notes();
   } else {
     parts.push_back({.name = std::filesystem::path(file).stem().string(), .mesh = noted_mesh(file, {}, up, notes)});
   }

@@ -94,7 +94,10 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
   how.sheets = what.robot;  // for a mesh, the user wants to know that nothing fits
-  if (is_device(asked.backend)) how.maker = "device", how.make = pack_on_device;
+  if (is_device(asked.backend)) {
+    how.maker = "device";
+    how.make = pack_on_device;
+  }
   how.cache = chosen_cache(asked.no_cache, asked.cache);
   std::vector<body_source> sources;
   for (const io::robot_part& part : what.parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
@@ -178,8 +181,12 @@ void print_all(const packed_subject& made) {
                       1e3 * p.gap_mean, 1e3 * p.gap_p95, 1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max,
                       made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
     const double n = double(made.bodies.size());
-    fill += p.fill / n, mean += p.gap_mean / n, p95 += p.gap_p95 / n, most = std::max(most, p.gap);
-    cached += made.cached[k], spheres += p.spheres.size();
+    fill += p.fill / n;
+    mean += p.gap_mean / n;
+    p95 += p.gap_p95 / n;
+    most = std::max(most, p.gap);
+    cached += made.cached[k];
+    spheres += p.spheres.size();
   }
   std::cout << name("all")
             << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95,

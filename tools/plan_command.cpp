@@ -95,7 +95,8 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   if (ranks) ranks->part();
   if (ranks && !ranks->speaks()) return 0;
   report.build = there->build;
-  report.fields = there->fields, report.fields_cached = there->fields_cached;
+  report.fields = there->fields;
+  report.fields_cached = there->fields_cached;
   report.upload += there->upload;
   shown.clear();
   if (asked.csv && asked.margin) {

@@ -188,7 +188,9 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.upload = there->see(clouds.seen);
   if (asked.self_filter) {
     own_points own = hide_own_points(asked, *there, poses, clouds, summed_radii(asked, robot, joints, there->facts()));
-    report.filter = std::move(own.filter), report.unseen = std::move(own.unseen), report.upload += own.upload;
+    report.filter = std::move(own.filter);
+    report.unseen = std::move(own.unseen);
+    report.upload += own.upload;
     note_hidden(asked, report.notes);
   }
   ask_questions(report, *there, poses, joints);

@@ -93,7 +93,8 @@ clearance::hiding room_of(const std::string& option, const std::string& text) {
   if (at == text.npos)
     throw usage_error(option, clearance::io::quoted(text) + " is not of the form NEAR:FAR, such as 0.1:10");
   const double from = number(option, text.substr(0, at)), to = number(option, text.substr(at + 1));
-  room.nearest = clearance::real(from), room.farthest = clearance::real(to);
+  room.nearest = clearance::real(from);
+  room.farthest = clearance::real(to);
   if (!(room.nearest > 0 && room.nearest < room.farthest && to <= 1e6))
     throw usage_error(option, "needs 0 < NEAR < FAR <= 1e6 (metres along z)");
   return room;
@@ -141,14 +142,17 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
     if (!text.empty()) all = numbers(option, text);
     return all;
   };
-  off.errors = each("--joint-error", raw.joint_error), off.speeds = each("--joint-speed", raw.joint_speed);
+  off.errors = each("--joint-error", raw.joint_error);
+  off.speeds = each("--joint-speed", raw.joint_speed);
   for (const double x : off.errors)
     if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
   if (!raw.sensors.empty() || !raw.calibrations.empty() || !raw.max_speed.empty() || !raw.joint_error.empty() ||
       !raw.joint_speed.empty())
     o.certain = off;
   const auto set_age = [&](cloud_options& cloud) {
-    cloud.off.max_speed = speed, cloud.off.age = off.delay + (alone ? later : 0), cloud.later = alone ? 0 : later;
+    cloud.off.max_speed = speed;
+    cloud.off.age = off.delay + (alone ? later : 0);
+    cloud.later = alone ? 0 : later;
   };
   set_age(o.recording.camera);
   for (cloud_options& cloud : o.clouds) set_age(cloud);

@@ -39,7 +39,8 @@ json nearest_of(const query_report& report, std::size_t part) {
     json one = place(report, pair.cloud, pair.point);
     const auto at = pixel((*report.clouds)[pair.cloud], pair.point);
     one["pixel"] = at ? json{at->first, at->second} : json(nullptr);
-    one["distance"] = or_null(pair.distance), one["lower"] = report.nearest->certain.lower(pair);
+    one["distance"] = or_null(pair.distance);
+    one["lower"] = report.nearest->certain.lower(pair);
     one["primitive"] = pair.primitive == none ? json(nullptr) : json(pair.primitive);
     all.push_back(std::move(one));
   }

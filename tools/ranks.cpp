@@ -48,7 +48,10 @@ struct joined_witnesses {
 io::digest digest_of(const std::vector<body>& bodies) {
   io::byte_writer all;
   for (const body& its : bodies) {
-    all.put(its.name), all.put(its.tolerance), all.put(its.packed.gap), all.put(its.packed.tolerance);
+    all.put(its.name);
+    all.put(its.tolerance);
+    all.put(its.packed.gap);
+    all.put(its.packed.tolerance);
     for (const std::uint8_t b : io::digest_of(its.closed).bytes) all.put(b);
     for (const inner_sphere& s : its.packed.spheres) {
       for (const real x : {s.center.x, s.center.y, s.center.z, s.radius}) all.put(x);
@@ -67,12 +70,14 @@ io::digest digest_of(const S& cloud, const Eigen::Isometry3d& pose) {
     all.put(b);
   for (const double x : pose.matrix().reshaped()) all.put(x);
   if constexpr (requires { cloud.filter; }) {
-    all.put(double(cloud.filter.nearest)), all.put(double(cloud.filter.farthest));
+    all.put(double(cloud.filter.nearest));
+    all.put(double(cloud.filter.farthest));
   } else {
     for (const real x :
          {cloud.inverse_fx, cloud.inverse_fy, cloud.cx, cloud.cy, cloud.scale, cloud.nearest, cloud.farthest})
       all.put(double(x));
-    all.put(std::uint64_t(cloud.width)), all.put(std::uint64_t(cloud.height));
+    all.put(std::uint64_t(cloud.width));
+    all.put(std::uint64_t(cloud.height));
   }
   return io::digest_of(all.bytes());
 }
@@ -93,13 +98,15 @@ class mpi_ranks final : public all_ranks {
   bool speaks() const override { return rank_ == 0; }
 
   void agree_on(const asked_model& asked, const named_values& options) override {
-    parts_ = asked.bodies->size(), of_spheres_ = asked.model == model_kind::spheres;
+    parts_ = asked.bodies->size();
+    of_spheres_ = asked.model == model_kind::spheres;
     alike_.clear();
     for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
     alike_.push_back({"robot", digest_of(*asked.bodies)});
   }
   std::vector<cloud> share(const std::vector<cloud>& clouds) override {
-    share_.clear(), first_.clear();
+    share_.clear();
+    first_.clear();
     std::vector<std::pair<std::string, io::digest>> seen;
     for (const cloud& one : clouds)
       std::visit(

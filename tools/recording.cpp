@@ -36,8 +36,10 @@ std::vector<std::string> words_of(std::string_view line) {
     if (const std::size_t first = line.find_first_not_of(" \t"); first != line.npos && line[first] == '"') {
       std::string word;
       std::size_t at = first + 1;
-      for (; at < line.size() && (line[at] != '"' || (at + 1 < line.size() && line[at + 1] == '"')); ++at)
-        word += line[at], at += line[at] == '"' ? 1 : 0;
+      for (; at < line.size() && (line[at] != '"' || (at + 1 < line.size() && line[at + 1] == '"')); ++at) {
+        word += line[at];
+        at += line[at] == '"' ? 1 : 0;
+      }
       comma = line.find(',', std::min(at, line.size()));
       const std::string_view after = line.substr(std::min(at + 1, line.size()));
       if (at < line.size() && trimmed(after.substr(0, after.find(','))).empty()) {
@@ -122,7 +124,8 @@ bool comes_before(const std::string& a, const std::string& b) {
   while (i < a.size() && j < b.size()) {
     if (!is_digit(a[i]) || !is_digit(b[j])) {
       if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
-      ++i, ++j;
+      ++i;
+      ++j;
       continue;
     }
     const auto take = [](const std::string& text, std::size_t& at) {
@@ -153,7 +156,8 @@ std::vector<std::string> list_frames(const std::string& where, std::vector<std::
         others.push_back(name);
       }
     }
-    std::ranges::sort(files, comes_before), std::ranges::sort(others, comes_before);
+    std::ranges::sort(files, comes_before);
+    std::ranges::sort(others, comes_before);
     const std::size_t all = files.size() + others.size();
     if (files.empty()) io::refuse(where, "has no frame: no file .pcd, .ply, .xyz, .txt or .png");
     if (!others.empty())
@@ -361,7 +365,8 @@ seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
     worst.relative = std::max(worst.relative, off);
     worst.absolute = std::max(worst.absolute, off * (s.at - cloud_.origin).norm() + frames::pose_error * s.at.norm());
   }
-  cloud_.off.relative += worst.relative, cloud_.off.absolute += worst.absolute;
+  cloud_.off.relative += worst.relative;
+  cloud_.off.absolute += worst.absolute;
   const auto [source, pose] = cloud_.view();
   return {source, pose};
 }

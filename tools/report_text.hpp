@@ -39,7 +39,8 @@ inline std::string with_short_numbers(const std::string& line, bool no_signs) {
         number = shorter;
       }
     }
-    out += number, at = end;
+    out += number;
+    at = end;
   }
   return out;
 }

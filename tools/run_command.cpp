@@ -175,7 +175,8 @@ class waypoints {
 /// What is certain, as the picture draws it.
 min_distance_result bracket_of(const certain_distance_result& certain) {
   min_distance_result r = certain.nominal;
-  r.lower = certain.lower, r.upper = certain.upper;
+  r.lower = certain.lower;
+  r.upper = certain.upper;
   return r;
 }
 

@@ -14,7 +14,10 @@ struct extent_of_all {
   Eigen::AlignedBox3d box;
   std::size_t points = 0;
 
-  void add(const Eigen::Vector3d& p) { box.extend(p), ++points; }
+  void add(const Eigen::Vector3d& p) {
+    box.extend(p);
+    ++points;
+  }
   double size() const { return points == 0 ? 0 : box.diagonal().norm(); }
 };
 

@@ -26,9 +26,13 @@ class rvl_reader {
   std::uint32_t next() {
     std::uint32_t value = 0;
     for (int shift = 0;; shift += 3) {
-      if (left_ == 0) word_ = from_.take<std::uint32_t>(), left_ = 8;
+      if (left_ == 0) {
+        word_ = from_.take<std::uint32_t>();
+        left_ = 8;
+      }
       const std::uint32_t nibble = word_ >> 28;
-      word_ <<= 4, --left_;
+      word_ <<= 4;
+      --left_;
       if (shift > 27) refuse(*file_, "the RVL image is damaged (a number is too long)");
       value |= (nibble & 7u) << shift;
       if ((nibble & 8u) == 0) return value;
@@ -95,7 +99,11 @@ compressed_depth read_compressed_depth(std::string_view format, std::string_view
   if (!known) refuse(file, "the image's format is " + io::quoted(format) + ", which is no depth");
   byte_reader from(bytes, file);
   float a = 0, b = 0;
-  if (known->headed) from.take<std::uint32_t>(), a = from.take<float>(), b = from.take<float>();
+  if (known->headed) {
+    from.take<std::uint32_t>();
+    a = from.take<float>();
+    b = from.take<float>();
+  }
   compressed_depth made;
   if (known->rvl) {
     const auto width = from.take<std::uint32_t>(), height = from.take<std::uint32_t>();

@@ -20,7 +20,9 @@ joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::si
     if (!(drive.offsets <= 0x1p22))
       throw std::invalid_argument("joint \"" + by.name + "\" follows by offsets beyond 2^22 (rad, m)");
     all[link].axis = {by.axis.x(), by.axis.y(), by.axis.z()};
-    all[link].value = std::uint32_t(drive.value), all[link].factor = drive.factor, all[link].offset = drive.offset;
+    all[link].value = std::uint32_t(drive.value);
+    all[link].factor = drive.factor;
+    all[link].offset = drive.offset;
     all[link].slides = by.kind == joint_kind::prismatic;
   }
   std::vector<std::uint32_t> of_part;

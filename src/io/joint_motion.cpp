@@ -13,7 +13,8 @@ joint_motion::joint_motion(const kinematic_tree& tree, std::vector<std::size_t> 
       from_(from.begin(), from.end()),
       to_(to.begin(), to.end()),
       base_(rigid(base, "the base")) {
-  tree.link_poses(from, options), tree.link_poses(to, options);
+  tree.link_poses(from, options);
+  tree.link_poses(to, options);
   for (const std::size_t link : links_)
     if (link >= tree.links().size())
       throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) +
@@ -51,7 +52,9 @@ part_travel joint_motion::travel(const std::vector<Eigen::Isometry3d>& poses, st
       const double a = from_[drive.value], b = to_[drive.value], rate = std::abs(drive.factor * (b - a));
       most = std::abs(drive.factor) * std::max(std::abs(a), std::abs(b)) + drive.offsets;
       if (by.kind == joint_kind::prismatic) {
-        all.speed += rate, all.most += rate, below += rate;
+        all.speed += rate;
+        all.most += rate;
+        below += rate;
       } else if (rate > 0) {
         const Eigen::Vector3d arm = center - poses[link].translation();
         all.speed += rate * std::min(far, arm.cross(poses[link].linear() * by.axis).norm() + radius);

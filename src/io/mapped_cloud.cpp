@@ -105,7 +105,8 @@ detail::pcd_layout detail::pcd_layout_of(const std::string& file, std::size_t sc
     layout.offset[axis] = std::uint32_t(field.offset);
   }
   if (header.record_bytes > 0xffffffff) refuse(file, "records of " + std::to_string(header.record_bytes) + " bytes");
-  layout.step = std::uint32_t(header.record_bytes), layout.count = header.points;
+  layout.step = std::uint32_t(header.record_bytes);
+  layout.count = header.points;
   if (header.points == 0) refuse(file, "POINTS is 0: there is nothing to map");
   return layout;
 }

@@ -25,7 +25,10 @@ polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
   std::string_view line;
   const auto next = [&] {  // the next word in small letters; empty at the file's end
     std::string_view word;
-    while ((word = take_word(line)).empty() && !rest.empty()) line = take_line(rest), ++at;
+    while ((word = take_word(line)).empty() && !rest.empty()) {
+      line = take_line(rest);
+      ++at;
+    }
     std::string small(word);
     for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
     return small;

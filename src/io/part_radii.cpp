@@ -24,7 +24,8 @@ std::vector<part_radius> part_radii(const kinematic_tree& tree, std::span<const 
         refuse("the " + what + " of joint \"" + tree.movable(i).name + "\" is " + std::to_string(each[i]) +
                (least == 0 ? ", which must be 0 or more" : ", which is not finite"));
   };
-  given(of.errors, "error", 0), given(of.speeds, "speed", -double(infinity));
+  given(of.errors, "error", 0);
+  given(of.speeds, "speed", -double(infinity));
   if (!(of.delay >= 0 && std::isfinite(of.delay)))
     refuse("a delay is " + std::to_string(of.delay) + " s, which must be 0 or more");
   std::vector<double> errors(tree.size()), all(tree.size());

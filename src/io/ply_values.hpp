@@ -148,7 +148,8 @@ class ply_values {
 
   /// Goes to record `number` of an element. In text each record has its own line; blank lines do not count.
   void begin(const ply_element& element, std::uint64_t number) {
-    element_ = &element, number_ = number;
+    element_ = &element;
+    number_ = number;
     if (!ascii()) return;
     do {
       if (rest_.empty())

@@ -46,7 +46,8 @@ constexpr std::uint32_t adler32(std::string_view bytes) {
   while (!bytes.empty()) {
     const std::string_view piece = bytes.substr(0, 5552);  // as many as cannot overflow
     for (const char byte : piece) b += a += std::uint8_t(byte);
-    a %= 65521, b %= 65521;
+    a %= 65521;
+    b %= 65521;
     bytes.remove_prefix(piece.size());
   }
   return b << 16 | a;
@@ -117,7 +118,8 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded) +
                      " (read_limits::unfolded), which --unfold-limit of the command raises");
-  image.width = std::size_t(width), image.height = std::size_t(height);
+  image.width = std::size_t(width);
+  image.height = std::size_t(height);
   return image;
 }
 

@@ -165,8 +165,10 @@ std::vector<body> make_bodies(const std::vector<body_source>& sources, const bod
         continue;
       else if (has_inside(made[k].closed) || !options.sheets)
         to_pack.push_back(k);
-      else
-        line(made[k], options), lined.push_back(made[k].name);
+      else {
+        line(made[k], options);
+        lined.push_back(made[k].name);
+      }
     } catch (const std::invalid_argument& error) {
       refuse_link(made[k].name, error);
     }

@@ -61,7 +61,10 @@ urdf_geometry read_urdf_geometry(const xml_place& around) {
   std::size_t count = 0;
   for (const auto& child : around.element.children)
     for (const char* known : {"box", "sphere", "cylinder", "capsule", "mesh"})
-      if (child.name == known) only = &child, ++count;
+      if (child.name == known) {
+        only = &child;
+        ++count;
+      }
   if (count == 0 && around.element.children.size() == 1)
     around.in(around.element.children.front()).refuse("is no shape of URDF");
   if (count != 1) around.refuse("has " + std::to_string(count) + " shapes, not one");
@@ -160,7 +163,8 @@ urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
     made.upper = at_limit.number_or("upper", 0);
     if (made.lower > made.upper) {
       notes.add("has a lower limit above its upper limit, and is taken to have none", owner, limit->line);
-      made.lower = -std::numeric_limits<double>::infinity(), made.upper = std::numeric_limits<double>::infinity();
+      made.lower = -std::numeric_limits<double>::infinity();
+      made.upper = std::numeric_limits<double>::infinity();
     }
   }
   if (const xml_element* mimicked = here.child("mimic")) {
@@ -232,7 +236,8 @@ joint step_of(const joint& whole, const std::string& name) {
   joint made;
   made.name = whole.name + "/" + name;
   made.kind = name.size() == 1 ? joint_kind::prismatic : joint_kind::continuous;
-  made.parent = whole.parent, made.child = whole.child;
+  made.parent = whole.parent;
+  made.child = whole.child;
   made.axis = name == "x" || name == "roll"    ? Eigen::Vector3d::UnitX()
               : name == "y" || name == "pitch" ? Eigen::Vector3d::UnitY()
                                                : Eigen::Vector3d::UnitZ();

@@ -89,7 +89,8 @@ class memory_on final : public backend_memory {
     auto made = asked_.fields == field_use::always ? clearance::io::with_fields_cached(on_, std::move(robot), {}, cache)
                                                    : clearance::io::with_kept_fields(std::move(robot), {}, cache);
     without_field = std::move(made.without);
-    fields = made.model.fields().size(), fields_cached = fields == 0 ? 0 : made.found;
+    fields = made.model.fields().size();
+    fields_cached = fields == 0 ? 0 : made.found;
     return std::move(made.model);
   }
 

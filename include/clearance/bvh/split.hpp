@@ -36,7 +36,12 @@ struct symmetric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
   void add_square(vec3 a) {
-    xx += a.x * a.x, xy += a.x * a.y, xz += a.x * a.z, yy += a.y * a.y, yz += a.y * a.z, zz += a.z * a.z;
+    xx += a.x * a.x;
+    xy += a.x * a.y;
+    xz += a.x * a.z;
+    yy += a.y * a.y;
+    yz += a.y * a.z;
+    zz += a.z * a.z;
   }
   symmetric less(float of_diagonal) const { return {xx - of_diagonal, xy, xz, yy - of_diagonal, yz, zz - of_diagonal}; }
   vec3 column(int k) const { return k == 0 ? vec3{xx, xy, xz} : (k == 1 ? vec3{xy, yy, yz} : vec3{xz, yz, zz}); }
@@ -167,7 +172,10 @@ inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
 struct median_split {
   std::size_t operator()(std::span<split_item> items) const {
     vec3 lo = items[0].plain_center(), hi = lo;
-    for (const auto& i : items) lo = splits::least(lo, i.plain_center()), hi = splits::most(hi, i.plain_center());
+    for (const auto& i : items) {
+      lo = splits::least(lo, i.plain_center());
+      hi = splits::most(hi, i.plain_center());
+    }
     const vec3 wide = hi - lo;
     // Products by 0 and 1 keep the order of coordinates, so one selection serves this rule and the next.
     const int axis = wide.y > wide.x ? (wide.z > wide.y ? 2 : 1) : (wide.z > wide.x ? 2 : 0);
@@ -235,7 +243,8 @@ struct neural_gas_split {
         const float volume = (i.upper[0] - i.lower[0]) * ((i.upper[1] - i.lower[1]) * (i.upper[2] - i.lower[2]));
         for (const std::size_t k : {near, 1 - near}) {
           const float by = pull[k != near] * volume;
-          sum[k] = sum[k] + splits::times(by, c), all[k] += by;
+          sum[k] = sum[k] + splits::times(by, c);
+          all[k] += by;
         }
       }
       for (std::size_t k = 0; k < 2; ++k)
@@ -265,7 +274,11 @@ struct surface_area_split {
       sweep(items.rbegin(), items.rend(), right.begin());
       for (std::size_t k = least; k + least <= n; ++k) {
         const float cost = float(k) * left[k - 1] + float(n - k) * right[n - k - 1];
-        if (cost < best) best = cost, cut = k, best_direction = direction;
+        if (cost < best) {
+          best = cost;
+          cut = k;
+          best_direction = direction;
+        }
       }
     }
     std::sort(items.begin(), items.end(), center_order{best_direction});
@@ -277,7 +290,8 @@ struct surface_area_split {
   static void sweep(In first, In last, Out area) {
     vec3 lo = splits::floats_of(first->lower), hi = splits::floats_of(first->upper);
     for (; first != last; ++first, ++area) {
-      lo = splits::least(lo, splits::floats_of(first->lower)), hi = splits::most(hi, splits::floats_of(first->upper));
+      lo = splits::least(lo, splits::floats_of(first->lower));
+      hi = splits::most(hi, splits::floats_of(first->upper));
       const vec3 d = hi - lo;
       *area = d.x * d.y + d.y * d.z + d.z * d.x;
     }

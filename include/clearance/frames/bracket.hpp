@@ -26,7 +26,10 @@ CLEARANCE_HD inline real extra_reach(double slop, double least) { return rounded
 /// no certificate, and so nothing is certain.
 inline void extra_reaches(std::span<const part_facts> facts, std::vector<real>& extra) {
   double least = infinity, most = 0;
-  for (const part_facts& f : facts) least = std::min(least, frames::slop(f)), most = std::max(most, frames::slop(f));
+  for (const part_facts& f : facts) {
+    least = std::min(least, frames::slop(f));
+    most = std::max(most, frames::slop(f));
+  }
   extra.clear();
   if (!(least < most && most < infinity)) return;
   for (const part_facts& f : facts) extra.push_back(extra_reach(frames::slop(f), least));
@@ -72,8 +75,10 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tole
 /// Something nearer than a sensor can measure may be anywhere in front of it, so nothing is free then. Call it after
 /// counts and bracket.
 CLEARANCE_HD inline void allow_for_too_close(min_distance_result& r) {
-  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free)
-    r.state = clearance::state::possible, r.lower = 0;
+  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free) {
+    r.state = clearance::state::possible;
+    r.lower = 0;
+  }
 }
 
 }  // namespace clearance::frames
@@ -170,7 +175,8 @@ CLEARANCE_HD inline void beyond(min_distance_result& r, real d_max, double slop,
 CLEARANCE_HD inline void cut(min_distance_result& r, real d_max, double slop, const frames::float_error& error) {
   if (r.part == none || r.distance <= d_max) return;
   min_distance_result none_within;
-  none_within.seen = r.seen, none_within.valid = r.valid;
+  none_within.seen = r.seen;
+  none_within.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) none_within.dropped[k] = r.dropped[k];
   r = none_within;
   beyond(r, d_max, slop, error);

@@ -216,7 +216,8 @@ std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> fact
       throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
     frame.put(facts, pose, cloud, rounding_of(source));
     f(source, turn{cloud, std::uint32_t(points), cloud + 1 >= count});
-    ++cloud, points += size;
+    ++cloud;
+    points += size;
   };
   if (count == 0) next(point_span{}, Eigen::Isometry3d::Identity());
   for_each_cloud(clouds, next);

@@ -84,7 +84,9 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   const world_transform part_from_world = world_from_part.inverse();
   world_transform part_from_cloud = part_from_world * world_from_cloud;
   const position start = part_from_world(world_from_cloud(origin));
-  part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
+  part_from_cloud.m[0][3] = start.x;
+  part_from_cloud.m[1][3] = start.y;
+  part_from_cloud.m[2][3] = start.z;
   const position center = part_from_cloud.inverse()(facts.center);
   const double radius = facts.radius >= 0 ? facts.radius : infinity;
   const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + radius + norm(start);
@@ -131,7 +133,8 @@ class cloud_frame : public frame_facts {
   cloud_frame() = default;
   cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts,
               const Eigen::Isometry3d& cloud, const position_error& off = {}) {
-    start(facts, parts), put(facts, cloud, 0, off);
+    start(facts, parts);
+    put(facts, cloud, 0, off);
   }
 
   /// Begins a frame with poses world-from-part. Throws std::invalid_argument if their number is wrong or one is not
@@ -141,7 +144,8 @@ class cloud_frame : public frame_facts {
       throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " +
                                   std::to_string(parts.size()) + " poses");
     with_vectors([&] {
-      error = {}, slop = 0;
+      error = {};
+      slop = 0;
       poses.clear();
       for (std::size_t k = 0; k < parts.size(); ++k)
         poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));

@@ -58,8 +58,11 @@ struct sight_test {
         square(dot(from, from) * (1 - margin)),
         away_square(dot(away, away)),
         along(dot(from, away)) {
-    if (!(256 * away_square >= dot(origin, origin) && away_square >= least_normal))
-      away = {0, 0, 0}, away_square = 0, along = from.x == from.x ? -infinity : not_a_number;
+    if (!(256 * away_square >= dot(origin, origin) && away_square >= least_normal)) {
+      away = {0, 0, 0};
+      away_square = 0;
+      along = from.x == from.x ? -infinity : not_a_number;
+    }
   }
   static constexpr real margin = 0x1p-16f;  ///< More than rounding changes in a square, as a share of all squares.
 };

@@ -42,7 +42,8 @@ triangle_mesh hidden_mesh(const depth_image<Pixel>& image, const hiding& room, s
                         const Eigen::Vector3d& d) {
     const auto first = std::uint32_t(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
-    mesh.triangles.push_back({first, first + 1, first + 2}), mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
   };
   const auto between = [&](double here, double there, const auto& at) {  // of two blocks, at their common edge
     if (here != there) wall(at(0, here), at(1, here), at(1, there), at(0, there));

@@ -116,7 +116,8 @@ mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
   const detail::pcd_layout at = detail::pcd_layout_of(file, sizeof(Scalar));
   strided_points<Scalar> layout;
   for (int axis = 0; axis < 3; ++axis) layout.offset[axis] = at.offset[axis];
-  layout.step = at.step, layout.count = at.count;
+  layout.step = at.step;
+  layout.count = at.count;
   mapped_cloud<strided_points<Scalar>> made = detail::records_of(at.file, layout, at.before);
   made.viewpoint = at.viewpoint;
   return made;

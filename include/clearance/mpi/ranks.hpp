@@ -41,7 +41,8 @@ class together {
  public:
   explicit together(MPI_Comm comm) : comm_(comm) {
     int started = 0, ended = 0;
-    MPI_Initialized(&started), MPI_Finalized(&ended);
+    MPI_Initialized(&started);
+    MPI_Finalized(&ended);
     if (started == 0 || ended != 0 || comm == MPI_COMM_NULL)
       throw std::invalid_argument(
           "clearance: ranks, but MPI_Init was not called, or MPI_Finalize was, or there is no communicator");
@@ -55,9 +56,11 @@ class together {
     try {
       if (!thrown_) work();
     } catch (const std::exception& e) {
-      thrown_ = std::current_exception(), sentence_ = e.what();
+      thrown_ = std::current_exception();
+      sentence_ = e.what();
     } catch (...) {
-      thrown_ = std::current_exception(), sentence_ = "something that is no std::exception";
+      thrown_ = std::current_exception();
+      sentence_ = "something that is no std::exception";
     }
   }
 
@@ -70,9 +73,11 @@ class together {
     attempt([&] {
       for (const Eigen::Isometry3d& pose : poses) mine.add(pose);
       for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) {
-        sizes.push_back(cloud.size()), mine.add(pose);
+        sizes.push_back(cloud.size());
+        mine.add(pose);
       });
-      mine.clouds = sizes.size(), mine.points = sizes.empty() ? 0 : sizes[0];
+      mine.clouds = sizes.size();
+      mine.points = sizes.empty() ? 0 : sizes[0];
     });
     mine.thrown = thrown_ ? 1 : 0;
     const std::vector<said> all = gather(comm_, ranks_, &mine, 1);

@@ -30,7 +30,8 @@ class any_points {
   sample operator[](std::size_t i) const { return of_->at(view_, begin_ + i); }
   any_points slice(std::size_t begin, std::size_t end) const {
     any_points piece = *this;
-    piece.begin_ += begin, piece.size_ = end - begin;
+    piece.begin_ += begin;
+    piece.size_ = end - begin;
     return piece;
   }
 

@@ -118,8 +118,12 @@ auto records_at(const T* first, std::size_t count) {
     return point_span(reinterpret_cast<const vec3*>(first), count);
   } else {
     strided_points<scalar> records;
-    records.data = reinterpret_cast<const std::byte*>(first), records.count = count, records.step = sizeof(T);
-    records.offset[0] = offsetof(T, x), records.offset[1] = offsetof(T, y), records.offset[2] = offsetof(T, z);
+    records.data = reinterpret_cast<const std::byte*>(first);
+    records.count = count;
+    records.step = sizeof(T);
+    records.offset[0] = offsetof(T, x);
+    records.offset[1] = offsetof(T, y);
+    records.offset[2] = offsetof(T, z);
     return records;
   }
 }

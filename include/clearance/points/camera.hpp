@@ -74,7 +74,8 @@ struct brown_lens {
         const at_one next{ray.x - share * dx, ray.y - share * dy};
         const seen there = shown(next);
         if (!(off(there) < before)) continue;
-        ray = next, s = there;
+        ray = next;
+        s = there;
         break;
       }
       if (!(share > 1e-4)) return {};
@@ -261,7 +262,8 @@ inline camera::camera(const camera_info& info) {
                              " that reaches beyond its " + pixels(info.width, info.height));
   const double bin_x = double(std::max<std::int64_t>(1, info.binning_x)),
                bin_y = double(std::max<std::int64_t>(1, info.binning_y));
-  width_ = std::uint32_t(double(wide) / bin_x), height_ = std::uint32_t(double(high) / bin_y);
+  width_ = std::uint32_t(double(wide) / bin_x);
+  height_ = std::uint32_t(double(high) / bin_y);
   detail::require_camera(width_ > 0 && height_ > 0, "bins more pixels than its region has");
 
   const auto& k = info.k;

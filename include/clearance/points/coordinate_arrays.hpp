@@ -47,7 +47,10 @@ struct coordinate_arrays {
   CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
   CLEARANCE_HD coordinate_arrays slice(std::size_t begin, std::size_t end) const {
     coordinate_arrays some = *this;
-    some.x += begin, some.y += begin, some.z += begin, some.count = end - begin;
+    some.x += begin;
+    some.y += begin;
+    some.z += begin;
+    some.count = end - begin;
     return some;
   }
 

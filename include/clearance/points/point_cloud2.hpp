@@ -113,8 +113,13 @@ strided_points<Scalar> point_cloud2_view(Message&& message, const point_filter& 
                          std::to_string(step) + " bytes" +
                          (rows > 1 ? ", in rows of " + std::to_string(said) + " bytes (row_step)" : "") +
                          ", but holds " + std::to_string(data.size()) + " bytes");
-  view.data = data.data(), view.count = rows * columns, view.step = std::uint32_t(step);
-  if (*row_step != row_bytes) view.width = std::uint32_t(columns), view.row_step = *row_step;
+  view.data = data.data();
+  view.count = rows * columns;
+  view.step = std::uint32_t(step);
+  if (*row_step != row_bytes) {
+    view.width = std::uint32_t(columns);
+    view.row_step = *row_step;
+  }
   view.filter = filter;
   return view;
 }

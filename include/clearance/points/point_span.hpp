@@ -121,7 +121,8 @@ struct point_span {
   }
   CLEARANCE_HD point_span slice(std::size_t begin, std::size_t end) const {
     point_span some = *this;
-    some.points += begin, some.count = end - begin;
+    some.points += begin;
+    some.count = end - begin;
     return some;
   }
 

@@ -119,7 +119,8 @@ struct stereo_noise {
     return detail::most_along_ray(z * z * (k * disparity / (focal_length * baseline)) * (1 + slack), box);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(disparity, "a stereo camera's disparity");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(disparity, "a stereo camera's disparity");
     for (const real x : {focal_length, baseline})
       if (!(x > 0 && x <= largest_real))
         throw std::invalid_argument("clearance: a stereo camera's focal length and baseline are " +
@@ -142,8 +143,8 @@ struct tof_noise {
     return k * (square * away * away + constant) * (1 + slack);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"),
-        detail::check_uncertain(constant, "a time of flight camera's constant");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(constant, "a time of flight camera's constant");
     detail::check_uncertain(square, "what a time of flight camera's noise grows by");
   }
   tof_noise slice(std::size_t, std::size_t) const { return *this; }
@@ -161,7 +162,8 @@ struct lidar_noise {
     return k * (share * detail::farthest_in(box) + constant) * (1 + slack);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(constant, "a LiDAR's constant");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(constant, "a LiDAR's constant");
     detail::check_uncertain(share, "what a LiDAR's noise grows by");
   }
   lidar_noise slice(std::size_t, std::size_t) const { return *this; }
@@ -192,7 +194,9 @@ struct point_radii {
     bool ordered = true;
     for (std::size_t j = 0; j < surveyed_points; ++j) {
       const real r = radii[begin + j];
-      least = min(least, r), most = max(most, r), ordered &= r == r;
+      least = min(least, r);
+      most = max(most, r);
+      ordered &= r == r;
     }
     return ordered && least >= 0 ? most : infinity;
   }
@@ -253,7 +257,10 @@ struct any_noise {
   void check(std::size_t points) const {
     if (kind > noise_kind::radii)
       throw std::invalid_argument("clearance: there is no kind of noise number " + std::to_string(int(kind)));
-    kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
+    kinect.check(points);
+    stereo.check(points);
+    tof.check(points);
+    lidar.check(points);
     if (kind == noise_kind::radii) radii.check(points);
   }
   any_noise slice(std::size_t begin, std::size_t end) const {

@@ -43,7 +43,8 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
         turn(rounded_up(of.turn)),
         drift(rounded_up(of.max_speed * of.age)),
         spread(rounded_up(clearance::fma(1.5, rounding_of(source).relative, 1 + 0x1p-19))) {
-    detail::check_uncertain(of.shift, "a sensor's shift"), detail::check_uncertain(of.turn, "a sensor's turn");
+    detail::check_uncertain(of.shift, "a sensor's shift");
+    detail::check_uncertain(of.turn, "a sensor's turn");
     detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
     detail::check_uncertain(of.age, "a cloud's age");
     check();
@@ -57,7 +58,8 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
 
   /// See `rounding_of`.
   void check() const {
-    detail::check_uncertain(shift, "a sensor's shift"), detail::check_uncertain(turn, "a sensor's turn");
+    detail::check_uncertain(shift, "a sensor's shift");
+    detail::check_uncertain(turn, "a sensor's turn");
     detail::check_uncertain(drift, "speed times age");
     if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
   }
@@ -117,7 +119,9 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   template <point_source Other, sensor_noise Its>
   uncertain<Other, Its> around_same(const Other& other, const Its& its) const {
     uncertain<Other, Its> same(other, its);
-    same.shift = shift, same.turn = turn, same.drift = drift;
+    same.shift = shift;
+    same.turn = turn;
+    same.drift = drift;
     return same;
   }
   /// Points `begin` to `end - 1`, each with its own radius.

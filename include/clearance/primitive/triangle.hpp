@@ -134,7 +134,10 @@ struct triangle {
                            share_nearest(from, along, c, a - c)};
     real best = 0, least = infinity;
     for (const real t : shares)
-      if (const real d = distance(fma(t, along, from)); d < least) best = t, least = d;
+      if (const real d = distance(fma(t, along, from)); d < least) {
+        best = t;
+        least = d;
+      }
     return best;
   }
 
@@ -181,7 +184,8 @@ struct triangle {
           noise(0x1p-22f * (extent(aq) + extent(ab) + extent(ca))),
           least(to_side<Rough, Looped>(aq, ab, noise)),
           inner(choice<Looped>(least.interior, least.squared, not_a_number)) {
-      add(to_side<Rough, Looped>(bq, bc, noise)), add(to_side<Rough, Looped>(cq, ca, noise));
+      add(to_side<Rough, Looped>(bq, bc, noise));
+      add(to_side<Rough, Looped>(cq, ca, noise));
     }
     CLEARANCE_HD void add(const side& s) {
       const bool nearer = s.squared < least.squared;

@@ -26,7 +26,8 @@ struct alignas(64) boxed_piece {
     box.add(s.position);
     if constexpr (capsule_source<S>) {
       const capsule c = source.around(i, s.position);
-      box.add(c.at(1)), wide = max(wide, c.radius + clearance::detail::noise_along(c));
+      box.add(c.at(1));
+      wide = max(wide, c.radius + clearance::detail::noise_along(c));
     }
   }
   CLEARANCE_HD void add(const extent& more, const std::uint32_t (&drops)[drop_reasons]) {

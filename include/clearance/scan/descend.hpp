@@ -73,14 +73,18 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
       const auto step = steps.child(n, j);
       const real lb = traits::lower_bound(step.volume, q);
       others.passed(lb < least ? least : lb);
-      if (lb < least) least = lb, best = step.node;
+      if (lb < least) {
+        least = lb;
+        best = step.node;
+      }
     }
     const real nearest = team.least(least);
     const int winner = team.first(least < infinity && least == nearest);
     if (!team.is(winner)) others.passed(least);
     best = team.from(winner, best);
     if (inner) {
-      live = winner >= 0 && others.wants(nearest), n = best;
+      live = winner >= 0 && others.wants(nearest);
+      n = best;
       inner = live && !steps.is_leaf(n);
     }
   }

@@ -94,7 +94,10 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
         if ((p.reasons >> 8 * j & 0xff) != 0) those &= ~(0x11111111u << j);
       those &= left.those;
       if (those != 0) those = pairs::add(those, p, first(), c * cluster);
-      if (__any_sync(all_lanes, those != 0)) return left = {c + 1, those}, false;
+      if (__any_sync(all_lanes, those != 0)) {
+        left = {c + 1, those};
+        return false;
+      }
     }
     left.those = ~0u;
   }

@@ -69,7 +69,10 @@ struct neighbours : packet<64> {
   }
   /// After the last point.
   void fill() {
-    for (std::size_t j = count; j < most; ++j) put(j, (*this)[0], -infinity), part[j] = primitive[j] = none;
+    for (std::size_t j = count; j < most; ++j) {
+      put(j, (*this)[0], -infinity);
+      part[j] = primitive[j] = none;
+    }
   }
   real reach() const {
     real largest = -infinity;
@@ -82,13 +85,15 @@ struct neighbours : packet<64> {
     const auto first = int(k < part[j]) | (int(k == part[j]) & int(id < primitive[j]));
     const bool nearer = bool(int(distance < within[j]) | (int(distance == within[j]) & first));
     within[j] = choice(nearer, distance, within[j]);
-    part[j] = nearer ? k : part[j], primitive[j] = nearer ? id : primitive[j];
+    part[j] = nearer ? k : part[j];
+    primitive[j] = nearer ? id : primitive[j];
   }
 
   /// The box around them, without noise.
   surroundings surround() const {
     extent box;
-    spread(x, box.lower.x, box.upper.x, most), spread(y, box.lower.y, box.upper.y, most);
+    spread(x, box.lower.x, box.upper.x, most);
+    spread(y, box.lower.y, box.upper.y, most);
     spread(z, box.lower.z, box.upper.z, most);
     const vec3 c = fma(0.5f, box.lower + box.upper, vec3{0, 0, 0});
     alignas(64) real far[block] = {};
@@ -130,7 +135,8 @@ struct neighbours : packet<64> {
           alignas(64) real square[block], root[block];
           for (std::size_t l = 0; l < block; ++l) {
             const auto half = its.before_root(part_from_cloud(n[b + l]));
-            before.put(l, half), square[l] = half.squared;
+            before.put(l, half);
+            square[l] = half.squared;
           }
           square_roots<block>(square, root);
           for (std::size_t l = 0; l < block; ++l) distance[l] = before[l].distance(root[l]);
@@ -163,7 +169,8 @@ class group_walk {
         const vec3 q = places_[k].part_from_cloud(all_.middle);
         const seen_part seen(all_, places_[k].around, q);
         seen_[k] = {q, unit_way(all_.middle - places_[k].around.center).direction, seen.distance};
-        gap = min(gap, seen.distance), all_.noise = max(all_.noise, seen.noise);
+        gap = min(gap, seen.distance);
+        all_.noise = max(all_.noise, seen.noise);
       }
     });
     const real wide = 0.02f + 0.1f * max(gap, 0);
@@ -172,7 +179,8 @@ class group_walk {
 
   /// Searches `parts` for what is nearest to points that lie together.
   void search(neighbours& near, const std::vector<std::uint32_t>& parts) {
-    all_.best = {}, all_.within = infinity;
+    all_.best = {};
+    all_.within = infinity;
     all_.set_limit(near.reach());
     inner_.clear();
     if (std::ranges::find(parts, hint_.part) != parts.end()) {
@@ -282,7 +290,10 @@ class group_walk {
       for (std::size_t j = 0; j < 8; ++j) {
         const tangent t = traits::tangent_at(here[j], q);
         const vec3 u = to_cloud(part_from_cloud, t.direction);
-        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
+        found.distance[j] = t.distance;
+        found.x[j] = u.x;
+        found.y[j] = u.y;
+        found.z[j] = u.z;
         keeps[j] = std::uint32_t(all.keeps(t.distance, u)) << j;
       }
       found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
@@ -319,16 +330,24 @@ class group_walk {
       for (std::size_t j = 0; j < 8; ++j) {
         const primitive_tangent t = here[j].tangent_at(q);
         const vec3 u = to_cloud(part_from_cloud, t.direction);
-        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
-        most[j] = t.most, radius[j] = t.radius;
+        found.distance[j] = t.distance;
+        found.x[j] = u.x;
+        found.y[j] = u.y;
+        found.z[j] = u.z;
+        most[j] = t.most;
+        radius[j] = t.radius;
         bound[j] = yardstick(t, u, all.radius).most;
       }
       for (std::uint32_t j = 0; j < count; ++j)
         if (bound[j] < all.best.most) {
           const vec3 u{found.x[j], found.y[j], found.z[j]};
           all.best = yardstick({{found.distance[j], u}, most[j], radius[j]}, u, all.radius);
-          all.within = most[j] + all.radius, nearest = j;
-          if constexpr (has_interior<PartView>) all.best.raise_to_zero(all.half), all.within = max(all.within, 0);
+          all.within = most[j] + all.radius;
+          nearest = j;
+          if constexpr (has_interior<PartView>) {
+            all.best.raise_to_zero(all.half);
+            all.within = max(all.within, 0);
+          }
         }
       if (nearest != none) {
         all.limit = min(all.limit, all.within + all.radius + all.noise);
@@ -347,7 +366,10 @@ class group_walk {
       const auto j = std::uint32_t(std::countr_zero(left));
       candidates_.push_back({its.distance[j], {its.x[j], its.y[j], its.z[j]}, {k, batch_.place[j]}});
     }
-    if (candidates_.size() >= most_candidates) measure(near), all_.set_limit(near.reach());
+    if (candidates_.size() >= most_candidates) {
+      measure(near);
+      all_.set_limit(near.reach());
+    }
   }
 
   /// Each point tests the candidates that it may be nearest to, first the nearest to the middle.

@@ -90,7 +90,10 @@ __global__ void __launch_bounds__(block_threads, 2)
   typename Tally::seeds before(a);
   const cards<Tally> all(rounds);
   point_reader<Source, Tally> reader(source, ahead, all);
-  pairs::prepare(a, [&] { reader.fetch(0), before.seed_from(a, source); });
+  pairs::prepare(a, [&] {
+    reader.fetch(0);
+    before.seed_from(a, source);
+  });
   before.seed(a);
   __syncthreads();
   std::uint32_t bound = Tally::seeds::found(a.parts);

@@ -51,7 +51,10 @@ __global__ void __launch_bounds__(most_parts)
   for (std::uint32_t first = 0, g = 0; first < count || g == 0; first += most_parts, ++g) {
     const std::uint32_t parts = lower_of(count - first, most_parts);
     if (t * cluster < parts) groups[g].parts.gather(t, parts);
-    if (t == 0) groups[g].frame = frame, groups[g].rigid = rigid;
+    if (t == 0) {
+      groups[g].frame = frame;
+      groups[g].rigid = rigid;
+    }
   }
 }
 
@@ -111,10 +114,16 @@ class launcher {
                               const typename Tally::arguments& answer) const {
     scan_arguments<Tally> a{};
     const std::uint32_t before = group * most_parts;
-    a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group,
+    a.parts = std::min(parts_ - before, most_parts);
+    a.views = views_.data() + before;
+    a.state = state_.data() + group;
     a.rest = placed_.data() + group;
-    a.overflow = overflow_.data(), a.overflow_room = overflow_room_;
-    a.cloud = now.cloud, a.first = now.first, a.last = now.last, a.answer = answer;
+    a.overflow = overflow_.data();
+    a.overflow_room = overflow_room_;
+    a.cloud = now.cloud;
+    a.first = now.first;
+    a.last = now.last;
+    a.answer = answer;
     return a;
   }
 
@@ -123,8 +132,10 @@ class launcher {
   void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Tally>& a) {
     const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
     const auto fill = [&](auto& parts, world_transform* world) {
-      for (std::uint32_t k = 0; k < a.parts; ++k)
-        parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
+      for (std::uint32_t k = 0; k < a.parts; ++k) {
+        parts.part[k] = frame_part(places[k]);
+        world[k] = places[k].world_from_part;
+      }
       for (std::uint32_t c = 0; c * cluster < a.parts; ++c) parts.gather(c, a.parts);
     };
     a.frame = frame;

@@ -41,7 +41,10 @@ struct lone_search : tree_steps<Tally> {
   template <class Visitor>
   static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
     if constexpr (has_interior<typename Tally::part_type>) {
-      if (is_inside<Tally>(k, x)) return v.offer_inside(k), true;
+      if (is_inside<Tally>(k, x)) {
+        v.offer_inside(k);
+        return true;
+      }
     }
     return false;
   }
@@ -65,7 +68,8 @@ struct lone_search : tree_steps<Tally> {
       const auto keep = [&](part_node e) {
         if (!(next.bound <= e.bound)) {
           const part_node farther = next;
-          next = e, e = farther;
+          next = e;
+          e = farther;
         }
         if (e.bound == e.bound) stack[below++] = e;
       };

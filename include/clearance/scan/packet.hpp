@@ -25,7 +25,12 @@ struct packet {
   alignas(64) real x[Lanes], y[Lanes], z[Lanes], within[Lanes];
 
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
-  void put(std::size_t j, vec3 p, real reach) { x[j] = p.x, y[j] = p.y, z[j] = p.z, within[j] = reach; }
+  void put(std::size_t j, vec3 p, real reach) {
+    x[j] = p.x;
+    y[j] = p.y;
+    z[j] = p.z;
+    within[j] = reach;
+  }
 
   /// Marks the lanes that something in a volume may be within reach of. Returns true if there are any.
   template <class V>
@@ -92,7 +97,10 @@ struct walking_packet : packet<Lanes> {
     this->mark(tree.volume(leaf), near);
     const auto gather = [&] {
       count = 0;
-      for (std::size_t j = 0; j < Lanes; ++j) list[count] = std::uint32_t(j), count += near[j];
+      for (std::size_t j = 0; j < Lanes; ++j) {
+        list[count] = std::uint32_t(j);
+        count += near[j];
+      }
     };
     gather();
     const std::uint32_t size = tree.size(leaf);
@@ -110,7 +118,8 @@ struct walking_packet : packet<Lanes> {
         nearest its{within[j], best[j]};
         its.offer(id, primitive.distance((*this)[j]));
         if (its.best != best[j]) where[j] = {leaf, k};
-        within[j] = its.within, best[j] = its.best;
+        within[j] = its.within;
+        best[j] = its.best;
       }
     }
   }

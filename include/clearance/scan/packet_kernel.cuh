@@ -75,8 +75,14 @@ struct cell_packets : lone_search<Tally> {
     cell_leaf leaf;
     if (live) leaf = cells(q);
     if constexpr (has_interior<typename Tally::part_type>) {
-      if (leaf.node.kind == cell_kind::inside) v.offer_inside(k), live = false;
-      if (live && !leaf.node.outside && is_inside<Tally>(k, x)) v.offer_inside(k), live = false;
+      if (leaf.node.kind == cell_kind::inside) {
+        v.offer_inside(k);
+        live = false;
+      }
+      if (live && !leaf.node.outside && is_inside<Tally>(k, x)) {
+        v.offer_inside(k);
+        live = false;
+      }
       __syncwarp();
     }
     if (!live) leaf.node.count = 0;
@@ -85,7 +91,10 @@ struct cell_packets : lone_search<Tally> {
       if (d <= v.reach(k)) v.offer(k, at, steps::id(k, at), d);
     };
     std::uint32_t begin = 0;
-    if (leaf.node.count != 0) test(cells.candidate(leaf, 0).place), begin = 1;
+    if (leaf.node.count != 0) {
+      test(cells.candidate(leaf, 0).place);
+      begin = 1;
+    }
 #pragma unroll 1
     for (; __any_sync(all_lanes, begin < leaf.node.count); begin += 32) {
       const std::uint32_t count = begin < leaf.node.count ? lower_of(32, leaf.node.count - begin) : 0;
@@ -190,7 +199,8 @@ __global__ void __launch_bounds__(block_threads, 2)
     const std::uint32_t i = place_in_packet(p, a.columns), index = a.first + i;
     const sample here = next;
     if (own) {
-      ++packet, --left;
+      ++packet;
+      --left;
       if (left != 0) next = read(packet);
       add_dropped(dropped, here.dropped);
     }
@@ -209,7 +219,8 @@ __global__ void __launch_bounds__(block_threads, 2)
     if ((done >> lane & 1) != 0 && exists) Tally::take(s, index, counts, v);
     if (own && left == 0) {  // a warp gets its next row only when it needs one: some rows take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
-      packet = __shfl_sync(all_lanes, packet, 0), left = row;
+      packet = __shfl_sync(all_lanes, packet, 0);
+      left = row;
       next = read(packet);
     }
   }

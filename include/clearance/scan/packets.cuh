@@ -45,7 +45,10 @@ struct sharing_memory {
 
   __device__ void clear() {
     idle = 0;
-    for (auto& t : tasks) t.shared = none, t.nodes = 0;
+    for (auto& t : tasks) {
+      t.shared = none;
+      t.nodes = 0;
+    }
     for (auto& p : packets) p.walkers = p.lock = 0;
   }
 };
@@ -67,7 +70,10 @@ struct shared_walk {
     if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
       bool over = false, given = false;
-      if (lane() == 0) given = fresh(task().shared) != none, over = fresh(memory().idle) == all_warps;
+      if (lane() == 0) {
+        given = fresh(task().shared) != none;
+        over = fresh(memory().idle) == all_warps;
+      }
       if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
       __nanosleep(300);  // waiting warps should not slow working ones; how long changes no answer
@@ -131,7 +137,10 @@ struct shared_walk {
     packet_task& its = s.tasks[helper];
     if (lane() == 0) {
       task().shared = place;
-      its.packet = task().packet, its.nodes = std::uint32_t(__popc(given)), its.part = k, its.live = live;
+      its.packet = task().packet;
+      its.nodes = std::uint32_t(__popc(given));
+      its.part = k;
+      its.live = live;
     }
     __threadfence_block();
     __syncwarp();
@@ -150,7 +159,8 @@ struct shared_walk {
     std::uint32_t others = 0;
     if (lane() == 0) {
       others = atomicSub(&p.walkers, 1u) - 1;
-      task().shared = none, task().nodes = 0;
+      task().shared = none;
+      task().nodes = 0;
     }
     release(p);
     return __shfl_sync(all_lanes, others, 0) == 0;
@@ -240,7 +250,8 @@ struct packet_search : lone_search<Tally> {
       }
       const bool its = (near >> lane() & 1) != 0;
       together(live && its, x, middle, from_bits(most_of(all_lanes, its ? to_bits(way) : 0)) * (1 + slack), v);
-      live = live && !its, left &= ~near;
+      live = live && !its;
+      left &= ~near;
     }
   }
 
@@ -316,8 +327,10 @@ struct packet_search : lone_search<Tally> {
           const auto primitive = steps::primitive(k, place);
           if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // a rough test is enough for most
             if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
-          if (const real d = primitive.distance(q); d <= reach)
-            v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
+          if (const real d = primitive.distance(q); d <= reach) {
+            v.offer(k, place, steps::id(k, place), d);
+            reach = v.reach(k);
+          }
         }
         continue;
       }
@@ -357,7 +370,10 @@ struct packet_search : lone_search<Tally> {
 #pragma unroll
     for (std::uint32_t h = 0; h < at_once; ++h) mine = lane() == h ? low[h] : mine;
 #pragma unroll
-    for (std::uint32_t h = 0; h < at_once; ++h) all += low[h] != unwanted, nearer += low[h] < mine;
+    for (std::uint32_t h = 0; h < at_once; ++h) {
+      all += low[h] != unwanted;
+      nearer += low[h] < mine;
+    }
     __syncwarp();  // all have read the node
     if (mine != unwanted)
       stack[top + all - 1 - nearer] = {from_ordered(mine & ~number), steps::child(k, node, begin + lane()).node};

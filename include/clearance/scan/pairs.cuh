@@ -197,8 +197,10 @@ struct pair_search : cell_pairs<Tally> {
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
     live = live && pair_search::near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
-    if constexpr (Tally::goes_ahead)  // others may be changing its inputs, and this warp is about to
-      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0, __syncwarp();
+    if constexpr (Tally::goes_ahead) {  // other warps may be changing the inputs of `live`, and this one is about to
+      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;
+      __syncwarp();
+    }
     const element q = moved(frame::place(part).part_from_cloud, c.x);
     if constexpr (has_interior<typename Tally::part_type>) {
       const unsigned gone =
@@ -243,7 +245,8 @@ struct pair_search : cell_pairs<Tally> {
       }
       if constexpr (any_size)
         if (top == 0 && below != 0) {
-          top = below < at_once ? below : at_once, below -= top;
+          top = below < at_once ? below : at_once;
+          below -= top;
           raise(stack, top, below);
         }
       if (top == 0) {
@@ -265,7 +268,8 @@ struct pair_search : cell_pairs<Tally> {
           taken = 1;
           if (top > room) {
             sink(stack, top, below);
-            below += top - at_once, top = at_once;
+            below += top - at_once;
+            top = at_once;
           }
         }
       const pending e = group() < taken ? stack[top - 1 - group()] : pending{not_a_number, {}, 0};  // within no reach

@@ -96,7 +96,8 @@ __device__ quad_points look_closely(const Source& source, std::uint32_t points, 
     sample s{{0, 0, 0}};
     const bool exists = first + j < points;
     if (exists) s = source[first + j];
-    p.at[j] = s.position, p.reasons |= (exists ? unsigned(s.dropped) : no_point) << 8 * j;
+    p.at[j] = s.position;
+    p.reasons |= (exists ? unsigned(s.dropped) : no_point) << 8 * j;
   }
   return p;
 }

@@ -44,7 +44,10 @@ struct tangent_walk : tree_steps<Tally> {
     const vec3 e = x - middle, half{largest(e.x), largest(e.y), largest(e.z)};
     const real radius = largest(rough_length(e)) * (1 + slack);
     __syncwarp();  // all have read what is there of the points before
-    if (lane() == 0) s.all = {middle, infinity, half, 0, {}, infinity, radius}, s.reach = infinity;
+    if (lane() == 0) {
+      s.all = {middle, infinity, half, 0, {}, infinity, radius};
+      s.reach = infinity;
+    }
     __syncwarp();
   }
 
@@ -53,7 +56,10 @@ struct tangent_walk : tree_steps<Tally> {
   /// The points' reaches have shrunk.
   __device__ void limit() {
     const std::uint32_t most = most_of(all_lanes, live ? ordered(v.reach(0)) : 0);
-    if (lane() == 0) s.reach = from_ordered(most), s.all.set_limit(s.reach);
+    if (lane() == 0) {
+      s.reach = from_ordered(most);
+      s.all.set_limit(s.reach);
+    }
     __syncwarp();
   }
   /// From shared memory, sixteen bytes at once.
@@ -104,13 +110,15 @@ struct tangent_walk : tree_steps<Tally> {
     seen_node e{};
     bool has;
     if (top == 0) {
-      e.part = begin + lane(), begin += 32;
+      e.part = begin + lane();
+      begin += 32;
       has = e.part < frame::here().head.parts;
       real noise = 0;
       if (has) {
         const frame_part& place = frame::place(e.part);
         const seen_part seen(s.all, place.root.around, place.part_from_cloud(s.all.middle));
-        e.distance = seen.distance, noise = seen.noise;
+        e.distance = seen.distance;
+        noise = seen.noise;
         e.node = steps::root(e.part);
       }
       noise = from_bits(most_of(all_lanes, to_bits(noise)));
@@ -131,7 +139,8 @@ struct tangent_walk : tree_steps<Tally> {
         const rigid_transform part_from_cloud = loaded(frame::place(e.part).part_from_cloud);
         const surroundings all = loaded(s.all);
         const tangent t = traits::tangent_at(child.volume, part_from_cloud(all.middle));
-        e.node = child.node, e.distance = t.distance;
+        e.node = child.node;
+        e.distance = t.distance;
         has = all.keeps(t.distance, to_cloud(part_from_cloud, t.direction));
       }
       __syncwarp();  // all have read the stack
@@ -151,7 +160,10 @@ struct tangent_walk : tree_steps<Tally> {
       const std::uint32_t farthest = most_of(all_lanes, mine);
       if (farthest == 0) break;
       const unsigned those = __ballot_sync(all_lanes, mine == farthest);
-      if (mine == farthest) s.nodes[top + before(those)] = e, mine = 0;
+      if (mine == farthest) {
+        s.nodes[top + before(those)] = e;
+        mine = 0;
+      }
       top += std::uint32_t(__popc(those));
     }
     __syncwarp();
@@ -163,7 +175,10 @@ struct tangent_walk : tree_steps<Tally> {
 #pragma unroll 1
       for (unsigned those = __ballot_sync(all_lanes, perhaps); those != 0; those &= those - 1) {
         const std::uint32_t k = begin + std::uint32_t(__ffs(int(those))) - 1;
-        if (live && is_inside<Tally>(k, x)) v.offer_inside(k), inner = lower_of(inner, k);
+        if (live && is_inside<Tally>(k, x)) {
+          v.offer_inside(k);
+          inner = lower_of(inner, k);
+        }
         __syncwarp();
       }
     }
@@ -197,22 +212,29 @@ struct tangent_walk : tree_steps<Tally> {
     if (has) {
       const rigid_transform part_from_cloud = loaded(frame::place(its.part).part_from_cloud);
       const auto t = steps::whole_primitive(its.part, its.place).tangent_at(part_from_cloud(s.all.middle));
-      u = to_cloud(part_from_cloud, t.direction), distance = t.distance, most = t.most;
+      u = to_cloud(part_from_cloud, t.direction);
+      distance = t.distance;
+      most = t.most;
       mine = yardstick(t, u, s.all.radius);
     }
     const std::uint32_t key = ordered(mine.most), least = least_of(all_lanes, key);
     if (from_ordered(least) < s.all.best.most) {  // the nearest becomes the yardstick
       const unsigned those = __ballot_sync(all_lanes, key == least);
       __syncwarp();  // all have read the last one
-      if (lane() + 1 == std::uint32_t(__ffs(int(those))))
-        s.all.best = mine, s.all.within = most + s.all.radius, s.hint = its, s.all.set_limit(s.reach);
+      if (lane() + 1 == std::uint32_t(__ffs(int(those)))) {
+        s.all.best = mine;
+        s.all.within = most + s.all.radius;
+        s.hint = its;
+        s.all.set_limit(s.reach);
+      }
       __syncwarp();
     }
     const bool wanted = has && finds && s.all.keeps(distance, u);
     const unsigned those = __ballot_sync(all_lanes, wanted);
     if (wanted) {
       const std::uint32_t at = candidates + before(those);
-      s.candidates[at] = {u, distance}, s.which[at] = its;
+      s.candidates[at] = {u, distance};
+      s.which[at] = its;
     }
     candidates += std::uint32_t(__popc(those));
     __syncwarp();
@@ -227,12 +249,16 @@ struct tangent_walk : tree_steps<Tally> {
       primitive_of_part which{};
       bool keep = begin + lane() < candidates;
       if (keep) {
-        c = s.candidates[begin + lane()], which = s.which[begin + lane()];
+        c = s.candidates[begin + lane()];
+        which = s.which[begin + lane()];
         keep = s.all.keeps(c.distance, c.direction);
       }
       const unsigned those = __ballot_sync(all_lanes, keep);
       __syncwarp();
-      if (keep) s.candidates[left + before(those)] = c, s.which[left + before(those)] = which;
+      if (keep) {
+        s.candidates[left + before(those)] = c;
+        s.which[left + before(those)] = which;
+      }
       left += std::uint32_t(__popc(those));
       __syncwarp();
     }
@@ -250,7 +276,10 @@ struct tangent_walk : tree_steps<Tally> {
   __device__ void measure() {
     std::uint32_t key = no_bound, first = 0;
     for (std::uint32_t j = lane(); j < candidates; j += 32)
-      if (const std::uint32_t d = ordered(s.candidates[j].distance); d < key) key = d, first = j;
+      if (const std::uint32_t d = ordered(s.candidates[j].distance); d < key) {
+        key = d;
+        first = j;
+      }
     const std::uint32_t least = least_of(all_lanes, key);
     first = __shfl_sync(all_lanes, first, __ffs(int(__ballot_sync(all_lanes, key == least))) - 1);
     const vec3 e = x - s.all.middle;
@@ -314,7 +343,10 @@ struct tangent_packets : lone_search<Tally> {
     while (left != 0) {
       if (__popc(left) >= worth_giving && sharing::asked()) {
         const unsigned half = half_of(left);
-        if (sharing::give({packet, half})) left &= ~half, lanes &= ~half;
+        if (sharing::give({packet, half})) {
+          left &= ~half;
+          lanes &= ~half;
+        }
       }
       live = (left >> lone::lane() & 1) != 0;
       const unsigned later = left >> 16 << 16;  // the middle one of neighbours in a row, if it is left

@@ -28,7 +28,11 @@ struct tile : point_tile {
   }
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
-    for (std::size_t j = 0; j < tile_points; ++j) x[j] -= origin.x, y[j] -= origin.y, z[j] -= origin.z;
+    for (std::size_t j = 0; j < tile_points; ++j) {
+      x[j] -= origin.x;
+      y[j] -= origin.y;
+      z[j] -= origin.z;
+    }
   }
 };
 
@@ -52,7 +56,10 @@ struct capsule_hull {
   /// Less an origin.
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
-    for (extent* box : {&starts, &ends}) box->lower = box->lower - origin, box->upper = box->upper - origin;
+    for (extent* box : {&starts, &ends}) {
+      box->lower = box->lower - origin;
+      box->upper = box->upper - origin;
+    }
   }
   /// May any of them touch a box? There must be a share of the way at which the box between starts and ends overlaps it
   /// along every axis. Up to rounding.
@@ -66,7 +73,8 @@ struct capsule_hull {
     const auto axis = [&](real lower, real upper, real sl, real su, real el, real eu) {
       const real off = beside + slack * (absolute(lower) + absolute(upper) + absolute(sl) + absolute(su) +
                                          absolute(el) + absolute(eu));
-      keep(upper + off - sl, upper + off - el), keep(su - lower + off, eu - lower + off);
+      keep(upper + off - sl, upper + off - el);
+      keep(su - lower + off, eu - lower + off);
     };
     axis(box.lower.x, box.upper.x, starts.lower.x, starts.upper.x, ends.lower.x, ends.upper.x);
     axis(box.lower.y, box.upper.y, starts.lower.y, starts.upper.y, ends.lower.y, ends.upper.y);
@@ -103,7 +111,9 @@ class capsule_tile {
 
   void put(std::size_t j, const capsule& c) {
     const real square = dot(c.along, c.along);
-    starts_.put(j, c.from), ends_.put(j, c.at(1)), along_.put(j, c.along);
+    starts_.put(j, c.from);
+    ends_.put(j, c.at(1));
+    along_.put(j, c.along);
     inverse_[j] = square > 0 ? 1 / square : 0;
     wide_[j] = c.radius + detail::noise_along(c);
   }
@@ -132,11 +142,17 @@ class capsule_tile {
   struct places {
     alignas(64) real x[points], y[points], z[points];
 
-    void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
+    void put(std::size_t j, vec3 p) {
+      x[j] = p.x;
+      y[j] = p.y;
+      z[j] = p.z;
+    }
     vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
     extent box() const {
       extent b;
-      spread(x, b.lower.x, b.upper.x), spread(y, b.lower.y, b.upper.y), spread(z, b.lower.z, b.upper.z);
+      spread(x, b.lower.x, b.upper.x);
+      spread(y, b.lower.y, b.upper.y);
+      spread(z, b.lower.z, b.upper.z);
       return b;
     }
   };
@@ -179,8 +195,10 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
     Survivors those;
     bool any = false;
     for (std::uint32_t k = 0; k < body.part_count; ++k)
-      if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k)))
-        any = true, those.add(t, around, body.answer.reach(k), k);
+      if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k))) {
+        any = true;
+        those.add(t, around, body.answer.reach(k), k);
+      }
     if (any)
       with_vectors(
           [&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
@@ -261,7 +279,8 @@ extent within_reach(const Body& body) {
     if (!(most >= 0)) continue;
     const auto beyond = [most](real c) { return (most + 0x1p-72f) * (1 + 8 * slack) + absolute(c) * slack; };
     const vec3 c = around.center, r{beyond(c.x), beyond(c.y), beyond(c.z)};
-    all.add(c - r), all.add(c + r);
+    all.add(c - r);
+    all.add(c + r);
   }
   return all;
 }
@@ -337,7 +356,10 @@ void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
       std::size_t nearest = 0;
       real least = infinity;
       for (std::size_t j = 0; j < tile_points; ++j)
-        if (away[j] < least) least = away[j], nearest = j;
+        if (away[j] < least) {
+          least = away[j];
+          nearest = j;
+        }
       if (may_reach(body.places[k].around, reach(k), t[nearest])) descend(t[nearest], index(n, nearest), k);
     }
   }

@@ -34,7 +34,10 @@ struct sphere {
       const ball* farthest = &balls[0];
       double most = reach(*farthest);
       for (const ball& b : balls)
-        if (const double r = reach(b); r > most) farthest = &b, most = r;
+        if (const double r = reach(b); r > most) {
+          farthest = &b;
+          most = r;
+        }
       if (!(most > 0)) break;
       // A step towards the far side of that ball: the one that would centre it, damped.
       const double along = away(*farthest);
@@ -45,7 +48,9 @@ struct sphere {
       c[2] += step * (farthest->center.z - c[2]);
     }
     const vec3 center{to_float(c[0]), to_float(c[1]), to_float(c[2])};
-    c[0] = center.x, c[1] = center.y, c[2] = center.z;
+    c[0] = center.x;
+    c[1] = center.y;
+    c[2] = center.z;
     double radius = 0;
     for (const ball& b : balls) radius = std::max(radius, reach(b));
     return {center, std::nextafter(real(radius * (1 + 2.0 * slack) + vanishing), infinity)};
