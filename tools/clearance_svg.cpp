@@ -172,6 +172,7 @@ std::string clearance_svg(const svg_frames& drawn, const std::string& name, std:
   const std::string legend =
       std::string("distance, in its bracket") + (certain.empty() ? "" : "; grey: with what is uncertain") +
       (unseen.empty() ? "" : "; orange: to what is not seen") + (blind.empty() ? "" : "; red: no data");
+
   std::string out =
       text(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
@@ -184,6 +185,7 @@ std::string clearance_svg(const svg_frames& drawn, const std::string& name, std:
       (above.empty() ? ""
                      : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) +
       "</g>\n";
+
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
   out += curve(to, certain).shaded("certain-", "#777") + curve(to, unseen).drawn("unseen-", "#e80", "#a50") +
          curve(to, frames).drawn("", "#48c", "#136");

@@ -29,6 +29,7 @@ class distance_pieces {
     std::vector<std::uint8_t> red, green, blue;
     std::vector<std::uint32_t> cloud, point;
     std::vector<std::int32_t> part;
+
     while (positions.empty() && cloud_ < clouds_.files.size()) {
       const std::size_t end = std::min<std::size_t>(clouds_.files[cloud_].size(), begin_ + most);
       const auto placed = clouds_.files[cloud_].in_world(clouds_.carriers[cloud_], clouds_.seen[cloud_], begin_, end);
@@ -46,6 +47,7 @@ class distance_pieces {
         point.push_back(std::uint32_t(i));
         part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
       }
+
       begin_ = end;
       if (end == clouds_.files[cloud_].size()) {
         begin_ = 0;
@@ -53,6 +55,7 @@ class distance_pieces {
         ++cloud_;
       }
     }
+
     return {std::move(positions),
             {{"red", std::move(red)},
              {"green", std::move(green)},

@@ -72,6 +72,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
   if (!bytes.starts_with(signature)) refuse(file, "is not a PNG image");
   bytes.remove_prefix(signature.size());
+
   std::uint64_t width = 0, height = 0;
   png_image image;
   bool data_ended = false;
@@ -83,6 +84,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     if (png_crc(bytes.substr(4, 4 + size)) != png_number(bytes.substr(8 + size)))
       refuse(file, "the PNG image is damaged (a checksum does not match)");
     const std::string_view data = bytes.substr(8, size);
+
     if (first != (name == "IHDR") || (first && size != 13)) refuse(file, "the PNG image has no proper header");
     if (first) {
       width = png_number(data);
@@ -108,6 +110,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     bytes.remove_prefix(12 + size);
     if (name == "IEND") break;
   }
+
   const std::uint64_t packed = image.packed.size();
   // Deflate packs at most 1032 bytes into one byte.
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)

@@ -47,8 +47,8 @@ struct symmetric {
   vec3 column(int k) const { return k == 0 ? vec3{xx, xy, xz} : (k == 1 ? vec3{xy, yy, yz} : vec3{xz, yz, zz}); }
 };
 
-/// The eigenvalues, ascending, by the roots of the characteristic polynomial. Its trace should be near 0, and its
-/// largest entry 1.
+/// The eigenvalues, ascending, by the roots of the characteristic polynomial. The matrix should have a trace near 0 and
+/// a largest entry of 1.
 inline void eigenvalues(const symmetric& m, float (&roots)[3]) {
   constexpr float third = 1.0f / 3.0f;
   const float root_of_3 = std::sqrt(3.0f);
@@ -117,7 +117,7 @@ struct split_item {
     const vec3 c = plain_center();
     return {c.x, c.y, c.z};
   }
-  /// The same in plain floats, as all rules here use it: compilers are slow with operators of Eigen.
+  /// The centre in plain floats, as the rules of this file use it: compilers are slow with operators of Eigen.
   vec3 plain_center() const {
     return {(lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2};
   }
@@ -231,12 +231,14 @@ struct neural_gas_split {
     const Eigen::Vector3f principal = principal_direction(items);
     std::sort(items.begin(), items.end(), center_order{principal});
     std::array<vec3, 2> mean = {items[n / 4].plain_center(), items[n - 1 - n / 4].plain_center()};
+
     for (int round = 0; round < rounds; ++round) {
       const float width =
           std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: shrinks from one rank to a hundredth
       const std::array<float, 2> pull = {1, std::exp(-1 / width)};
       std::array<vec3, 2> sum = {};
-      std::array<float, 2> all = {0, 0};
+      std::array<float, 2> weight = {0, 0};
+
       for (const auto& i : items) {
         const vec3 c = i.plain_center(), to_0 = c - mean[0], to_1 = c - mean[1];
         const std::size_t near = splits::plain_dot(to_1, to_1) < splits::plain_dot(to_0, to_0);
@@ -244,12 +246,13 @@ struct neural_gas_split {
         for (const std::size_t k : {near, 1 - near}) {
           const float by = pull[k != near] * volume;
           sum[k] = sum[k] + splits::times(by, c);
-          all[k] += by;
+          weight[k] += by;
         }
       }
       for (std::size_t k = 0; k < 2; ++k)
-        if (all[k] > 0 && splits::all_finite(sum[k])) mean[k] = splits::over(sum[k], all[k]);
+        if (weight[k] > 0 && splits::all_finite(sum[k])) mean[k] = splits::over(sum[k], weight[k]);
     }
+
     vec3 way = mean[1] - mean[0];
     if (!(splits::plain_length(way) > 0) || !splits::all_finite(way)) way = splits::floats_of(principal);
     std::sort(items.begin(), items.end(), center_order{splits::for_eigen(way)});

@@ -49,10 +49,10 @@ CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_err
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
   if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0))
     return {double(infinity), unit_error};
-  const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
-  if (off.relative <= source_share) return {here, unit_error};
+  const double at_zero = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
+  if (off.relative <= source_share) return {at_zero, unit_error};
   const double more = off.relative - source_share;
-  return {fma(more, extent, here) / (1 - more),
+  return {fma(more, extent, at_zero) / (1 - more),
           (unit_error + more) / (1 - more)};  // the error depends on the true distance; this is by the computed one
 }
 
@@ -118,9 +118,9 @@ struct frame_facts {
       : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre} {}
 
   CLEARANCE_HD void add(const part_facts& facts, real error_of_part) {
-    const double its = frames::slop(facts);
+    const double slop_of_part = frames::slop(facts);
     error.widen({error_of_part});
-    slop = its > slop ? its : slop;
+    slop = slop_of_part > slop ? slop_of_part : slop;
   }
 };
 

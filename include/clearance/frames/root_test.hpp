@@ -16,7 +16,7 @@ CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
   return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
 }
 
-/// The same for anything in a capsule.
+/// May anything in a capsule be within reach of a ball?
 CLEARANCE_HD inline bool may_reach(const ball& around, real reach, const capsule& c) {
   return may_reach({{0, 0, 0}, around.radius}, reach + c.radius + detail::noise_along(c),
                    detail::rough_way(c, around.center));

@@ -115,7 +115,7 @@ namespace detail {
 
 static_assert(sizeof(field_cell) == 8);
 
-/// As they are in a file: least byte first.
+/// Swaps the bytes of values, if need be, to the order of a file: least byte first.
 inline void swap_on_big_endian(std::span<field_cell> cells) {
   if constexpr (std::endian::native == std::endian::big)
     for (field_cell& c : cells) c.value = std::uint16_t(c.value << 8 | c.value >> 8);
@@ -237,8 +237,8 @@ class field_cache {
   template <class Part>
   static std::pair<digest, std::optional<field<host>>> of(const Part& part, const field_options& options) {
     std::string why_not;
-    auto its = clearance::detail::field_of(part, options, why_not);
-    return {its ? field_key(part, its->shape) : digest{}, std::move(its)};
+    auto unfilled = clearance::detail::field_of(part, options, why_not);
+    return {unfilled ? field_key(part, unfilled->shape) : digest{}, std::move(unfilled)};
   }
 
   kept_files files_;

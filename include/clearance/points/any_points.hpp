@@ -11,7 +11,7 @@
 namespace clearance {
 
 /// A view of any point source, for a host: the source's own view and a table of its functions. A scan calls one for a
-/// hundred points, so it is as fast as the source. Of an uncertain source, `uncertain<any_points, ...>` is one, too.
+/// hundred points, so it is as fast as the source. `uncertain<any_points, ...>` is any uncertain source.
 class any_points {
  public:
   using can = clearance::can<sources::read, sources::surveyed, sources::unfiltered, sources::ranged, sources::seen,

@@ -66,7 +66,7 @@ struct coordinate_arrays {
   template <class F>
   coordinate_arrays with_pieces(const F& f) const {
     coordinate_arrays same = *this;
-    for (const real** its : {&same.x, &same.y, &same.z}) *its = f(column{*its, count}).values;
+    for (const real** array : {&same.x, &same.y, &same.z}) *array = f(column{*array, count}).values;
     return same;
   }
   /// See `rounding_of`.

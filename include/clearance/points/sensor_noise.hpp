@@ -88,7 +88,7 @@ struct no_noise {
 /// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
 /// noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. They measured walls at up to 60 degrees.
 struct kinect_noise {
-  real k = 3;  ///< So many standard deviations.
+  real k = 3;  ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real z = p.z - 0.4f;
@@ -108,7 +108,7 @@ struct stereo_noise {
   real focal_length;  ///< f, in pixels.
   real baseline;      ///< B, in metres.
   real disparity;     ///< s, the standard deviation of a disparity, in pixels.
-  real k = 3;         ///< So many standard deviations.
+  real k = 3;         ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real each = divide(product(k, disparity), product(focal_length, baseline));
@@ -135,7 +135,7 @@ struct stereo_noise {
 struct tof_noise {
   real constant;  ///< Metres.
   real square;    ///< Metres for each square metre.
-  real k = 3;     ///< So many standard deviations.
+  real k = 3;     ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
   real most(std::size_t, const extent& box) const {
@@ -155,7 +155,7 @@ struct tof_noise {
 struct lidar_noise {
   real constant;   ///< Metres.
   real share = 0;  ///< Metres for each metre.
-  real k = 3;      ///< So many standard deviations.
+  real k = 3;      ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
   real most(std::size_t, const extent& box) const {
@@ -264,9 +264,9 @@ struct any_noise {
     if (kind == noise_kind::radii) radii.check(points);
   }
   any_noise slice(std::size_t begin, std::size_t end) const {
-    any_noise its = *this;
-    if (kind == noise_kind::radii) its.radii = radii.slice(begin, end);
-    return its;
+    any_noise piece = *this;
+    if (kind == noise_kind::radii) piece.radii = radii.slice(begin, end);
+    return piece;
   }
 };
 

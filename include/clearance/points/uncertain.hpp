@@ -12,7 +12,7 @@ namespace clearance {
 struct cloud_uncertainty {
   double shift = 0, turn = 0;  ///< By how much the sensor's pose may be wrong: metres, and radians about its (0,0,0).
   double max_speed = 0;        ///< No obstacle is faster, in m/s.
-  double age = 0;              ///< So old is the cloud, in seconds.
+  double age = 0;              ///< How old the cloud is, in seconds.
 };
 
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
@@ -71,9 +71,9 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
     if (!bounded(radius(i, s.position))) s.dropped = drop_reason::too_close;
     return s;
   }
-  /// Or may the point be anywhere?
+  /// Does a radius bound where the point is? If not, the point may be anywhere.
   CLEARANCE_HD static bool bounded(real radius) { return radius < 1e6f; }
-  /// Of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
+  /// The radius of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
   CLEARANCE_HD real radius(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
     const real turned = capsule_source<S> ? 0 : length(seen), its = noise(i, seen);
@@ -88,7 +88,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
       return {p, {0, 0, 0}, radius(i, p)};
     }
   }
-  /// Point i is at p. What a turn adds along a capsule is in `rounding`.
+  /// What the radius of point i at p is made of. What a turn adds along a capsule is in `rounding`.
   CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
     const real turned = capsule_source<S> ? 0 : length(seen);
@@ -100,10 +100,10 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
                        std::uint32_t (&dropped)[drop_reasons]) const
     requires surveys
   {
-    std::uint32_t its[drop_reasons] = {};
-    if (!source.survey(begin, box, its)) return false;
-    if (its[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
-    if (!(box.lower.x <= box.upper.x)) {                         // no point
+    std::uint32_t dropped_now[drop_reasons] = {};
+    if (!source.survey(begin, box, dropped_now)) return false;
+    if (dropped_now[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
+    if (!(box.lower.x <= box.upper.x)) {                                 // no point
       widest = 0;
     } else {
       const vec3 sensor = sensor_of(source);
@@ -112,7 +112,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
     }
     if (!bounded(widest)) return false;
     ends = box;
-    for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] += dropped_now[k];
     return true;
   }
   /// Another source with the same uncertainty, and a noise for each of its points.
@@ -130,7 +130,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   {
     return around_same(clearance::slice(source, begin, end), clearance::slice(noise, begin, end));
   }
-  /// Of a `sharded` source.
+  /// Piece k of a `sharded` source, with the same uncertainty.
   auto piece(std::size_t k) const
     requires sharded_source<S>
   {

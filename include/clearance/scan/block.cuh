@@ -71,7 +71,7 @@ struct alignas(16) pending {
 };
 
 inline constexpr std::uint32_t pair_capacity = 1024;
-inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Of a warp.
+inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Entries of a warp's stack.
 
 /// The first nodes of every tree, in `Bytes` bytes, for trees in arrays.
 template <hierarchy H, std::size_t Bytes>
@@ -96,8 +96,8 @@ struct block_memory {
   typename Tally::memory answer;
   std::uint32_t dropped[drop_reasons];
   std::uint32_t last;       ///< Not 0 if this is the last block to finish.
-  alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0 (`shifted`). It is read as sixteen bytes, with
-  bool rigid, shifted;      ///< these, which no thread writes any more by then.
+  alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0. It is read as sixteen bytes, with the two
+  bool rigid, shifted;      ///< `shifted`: the origin is not 0. No thread writes these two when the origin is read.
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Tally::top_bytes> tops;

@@ -39,7 +39,7 @@ struct alignas(64) boxed_piece {
     add(other.box, other.dropped);
     wide = max(wide, other.wide);
   }
-  /// Its box less an origin.
+  /// The piece's box less an origin.
   extent box_from(vec3 origin) const { return {box.lower - origin, box.upper - origin}; }
 };
 static_assert(sizeof(boxed_piece) == 64);

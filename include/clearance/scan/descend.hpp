@@ -64,6 +64,7 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
   typename Steps::node_type n{};
   if (live) n = steps.root();
   bool inner = live && !steps.is_leaf(n);
+
   while (team.any(inner)) {
     const std::uint32_t size = inner ? steps.size(n) : 0;
     typename Steps::node_type best = n;
@@ -78,6 +79,7 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
         best = step.node;
       }
     }
+
     const real nearest = team.least(least);
     const int winner = team.first(least < infinity && least == nearest);
     if (!team.is(winner)) others.passed(least);

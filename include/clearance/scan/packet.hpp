@@ -103,6 +103,7 @@ struct walking_packet : packet<Lanes> {
       }
     };
     gather();
+
     const std::uint32_t size = tree.size(leaf);
     for (std::uint32_t k = 0; k < size; ++k) {
       const typename H::primitive_type& primitive = tree.primitive(leaf, k);
@@ -113,13 +114,14 @@ struct walking_packet : packet<Lanes> {
         });
         gather();
       }
+
       for (std::uint32_t n = 0; n < count; ++n) {
         const std::uint32_t j = list[n];
-        nearest its{within[j], best[j]};
-        its.offer(id, primitive.distance((*this)[j]));
-        if (its.best != best[j]) where[j] = {leaf, k};
-        within[j] = its.within;
-        best[j] = its.best;
+        nearest so_far{within[j], best[j]};
+        so_far.offer(id, primitive.distance((*this)[j]));
+        if (so_far.best != best[j]) where[j] = {leaf, k};
+        within[j] = so_far.within;
+        best[j] = so_far.best;
       }
     }
   }

@@ -118,9 +118,9 @@ class capsule_tile {
     wide_[j] = c.radius + detail::noise_along(c);
   }
   capsule_hull hull() const {
-    capsule_hull all{starts_.box(), ends_.box()};
-    for (std::size_t j = 0; j < points; ++j) all.wide = wide_[j] > all.wide ? wide_[j] : all.wide;
-    return all;
+    capsule_hull around{starts_.box(), ends_.box()};
+    for (std::size_t j = 0; j < points; ++j) around.wide = wide_[j] > around.wide ? wide_[j] : around.wide;
+    return around;
   }
   vec3 start(std::size_t j) const { return starts_[j]; }
 
@@ -178,10 +178,12 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
         if (hull.may_reach(body.places[k].around, body.answer.reach(k))) return true;
       return false;
     };
+
     hull.subtract(body.origin);
     // The box knows no part whose reach is below minus its size.
     const bool beside = hull.wide == 0 && !hull.may_touch(near, 0);
     if (counted && (hull.empty() || beside || !may_reach_some())) continue;
+
     tile points;  // read apart: in vector code a product in a position may be fused with what follows
     drop_tally again;
     points.load(body.source, i, std::min(capsule_tile::points, end - i), 1, counted ? again : mine);
@@ -192,16 +194,18 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
         t.put(j, points.x[j] == points.x[j] ? body.element(points[j], i + j) : capsule{points[j], {0, 0, 0}, 0});
       hull = t.hull();
     });
-    Survivors those;
+
+    Survivors survivors;
     bool any = false;
     for (std::uint32_t k = 0; k < body.part_count; ++k)
       if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k))) {
         any = true;
-        those.add(t, around, body.answer.reach(k), k);
+        survivors.add(t, around, body.answer.reach(k), k);
       }
     if (any)
-      with_vectors(
-          [&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
+      with_vectors([&] {
+        survivors.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); });
+      });
   }
 }
 
@@ -272,17 +276,17 @@ inline bool may_reach(const ball& around, real reach, const extent& box) {
 /// overlaps it. (The slack covers the rounding there, the sums here, and squares that underflow.)
 template <class Body>
 extent within_reach(const Body& body) {
-  extent all;
+  extent box;
   for (std::uint32_t k = 0; k < body.part_count; ++k) {
     const ball& around = body.places[k].around;
     const real most = frames::limit(around, body.answer.reach(k));
     if (!(most >= 0)) continue;
     const auto beyond = [most](real c) { return (most + 0x1p-72f) * (1 + 8 * slack) + absolute(c) * slack; };
     const vec3 c = around.center, r{beyond(c.x), beyond(c.y), beyond(c.z)};
-    all.add(c - r);
-    all.add(c + r);
+    box.add(c - r);
+    box.add(c + r);
   }
-  return all;
+  return box;
 }
 inline bool beside(const extent& a, const extent& b) {
   const bool together = int(a.lower.x <= b.upper.x) & int(b.lower.x <= a.upper.x) & int(a.lower.y <= b.upper.y) &
@@ -304,6 +308,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
   const extent near_robot = within_reach(body);  // spares nearly all boxes the test of every part
   if constexpr (capsule_source<std::remove_cvref_t<decltype(body.source)>>)
     return scan_capsules<tile_survivors>(body, begin, end, near_robot, mine);
+
   for (std::size_t i = begin; i < end; i += tile_points) {
     const std::size_t count = std::min(tile_points, end - i);
     tile t;
@@ -317,6 +322,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
       box = box_of(t);
       loaded = true;
     }
+
     if (body.answer.ended(body.first + std::uint32_t(i))) continue;
     if (beside(box, near_robot)) continue;
     std::uint32_t k = 0;
@@ -327,6 +333,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
       t.load(body.source, i, count, 1, uncounted);
       t.subtract(body.origin);
     }
+
     tile_survivors near;
     for (; k < body.part_count; ++k)
       if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k), k);
