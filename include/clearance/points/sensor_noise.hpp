@@ -105,9 +105,9 @@ struct kinect_noise {
 /// Stereo, active or passive, and structured light: z^2 s / (f B) along z. Gallup et al., "Variable baseline/resolution
 /// stereo", CVPR 2008; for structured light Khoshelham and Elberink, Sensors 12(2), 2012.
 struct stereo_noise {
-  real focal_length;  ///< f, in pixels.
-  real baseline;      ///< B, in metres.
-  real disparity;     ///< s, the standard deviation of a disparity, in pixels.
+  real focal_length;  ///< The focal length f, in pixels.
+  real baseline;      ///< The distance B between the cameras, in metres.
+  real disparity;     ///< The standard deviation s of a disparity, in pixels.
   real k = 3;         ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
@@ -133,8 +133,8 @@ struct stereo_noise {
 /// Time of flight: constant + square |p|^2, because light that returns falls with the square of the way. Lange and
 /// Seitz, "Solid-state time-of-flight range camera", IEEE Journal of Quantum Electronics 37(3), 2001.
 struct tof_noise {
-  real constant;  ///< Metres.
-  real square;    ///< Metres for each square metre.
+  real constant;  ///< The standard deviation at distance 0, in metres.
+  real square;    ///< What the deviation grows by for each square metre of squared distance, in metres.
   real k = 3;     ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
@@ -153,8 +153,8 @@ struct tof_noise {
 /// LiDAR: constant + share |p|, as data sheets say it. Glennie and Lichti, "Static calibration and analysis of the
 /// Velodyne HDL-64E S2", Remote Sensing 2(6), 2010.
 struct lidar_noise {
-  real constant;   ///< Metres.
-  real share = 0;  ///< Metres for each metre.
+  real constant;   ///< The standard deviation at distance 0, in metres.
+  real share = 0;  ///< What the deviation grows by for each metre of distance, in metres.
   real k = 3;      ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
