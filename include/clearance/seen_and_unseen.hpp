@@ -35,14 +35,18 @@ class seen_and_unseen::engine {
   /// The result stays valid until the next call.
   template <class Clouds>
   const result& run(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const seen_and_unseen& q) {
-    q.check(), detail::check_labels(q.labels, clouds);
+    q.check();
+    detail::check_labels(q.labels, clouds);
     const auto& here = readable_(clouds);
     if (q.labels.empty()) return run_both(poses, here, here, q);
     memory_.begin();
     return run_both(poses, here, masked_clouds(here, std::get<0>(memory_.put(q.labels))), q);
   }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() { seen_.forget(), unseen_.forget(); }
+  void forget() {
+    seen_.forget();
+    unseen_.forget();
+  }
 
  private:
   template <class Clouds, class Shown>
