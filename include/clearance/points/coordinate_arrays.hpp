@@ -40,7 +40,11 @@ struct coordinate_arrays {
   CLEARANCE_HD unsigned look(const four& r, std::size_t, vec3 (&out)[4]) const {
     real f[12];
     CLEARANCE_UNROLL
-    for (int j = 0; j < 4; ++j) f[3 * j] = r.x.f[j], f[3 * j + 1] = r.y.f[j], f[3 * j + 2] = r.z.f[j];
+    for (int j = 0; j < 4; ++j) {
+      f[3 * j] = r.x.f[j];
+      f[3 * j + 1] = r.y.f[j];
+      f[3 * j + 2] = r.z.f[j];
+    }
     return filter.look(f, out);
   }
 
