@@ -16,9 +16,8 @@ template <class Place>
 struct record {
   distance_key key = no_key;
   std::uint32_t part = none;
-  std::uint32_t id =
-      none;          ///< The primitive's number in the user's array; none: the point is inside, no primitive is known.
-  Place place = {};  ///< Where in the tree the primitive is.
+  std::uint32_t id = none;  ///< The primitive's number in the user's array; none: the point is inside, none is known.
+  Place place = {};         ///< Where in the tree the primitive is.
 };
 
 /// Lexicographic: distance, point, part, primitive.

@@ -95,9 +95,11 @@ struct block_memory {
   scan_head<Tally> head;
   typename Tally::memory answer;
   std::uint32_t dropped[drop_reasons];
-  std::uint32_t last;       ///< Not 0 if this is the last block to finish.
-  alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0. It is read as sixteen bytes, with the two
-  bool rigid, shifted;      ///< `shifted`: the origin is not 0. No thread writes these two when the origin is read.
+  std::uint32_t last;  ///< Not 0 if this is the last block to finish.
+  /// Subtracted from points if it is not 0, which `shifted` says. Sixteen bytes are read at once, the origin and the
+  /// two members after it, which no thread writes any more by then.
+  alignas(16) vec3 origin;
+  bool rigid, shifted;
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Tally::top_bytes> tops;

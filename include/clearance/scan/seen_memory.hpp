@@ -31,10 +31,9 @@ struct alignas(8) primitive_of_part {
 
 /// A warp's share of shared memory. What all lanes know is here, too, because registers are few.
 struct seen_memory {
-  static constexpr std::uint32_t at_once = 4;  ///< Nodes whose eight children are looked at together.
-  static constexpr std::uint32_t leaves_at_once =
-      8;                                     ///< Leaves that are looked at together, with four primitives each.
-  static constexpr std::uint32_t many = 64;  ///< With more pending nodes a warp takes one after the other.
+  static constexpr std::uint32_t at_once = 4;         ///< Nodes whose eight children are looked at together.
+  static constexpr std::uint32_t leaves_at_once = 8;  ///< Leaves looked at together, four primitives of each.
+  static constexpr std::uint32_t many = 64;           ///< With more pending nodes a warp takes one after the other.
   static constexpr std::uint32_t most_nodes = many + 32 + deepest_stack, most_leaves = leaves_at_once + 32,
                                  most_candidates = 64;
   seen_node nodes[most_nodes];
