@@ -166,6 +166,7 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
   const bool named = !asked.cache.empty();
   if (asked.model == model_kind::spheres || fields == field_use::always || named)
     check_kept(body_options_of(asked).cache, named, notes);
+
   std::vector<io::packed_part> given;
   if (!asked.packing.empty())
     given = io::within_memory(asked.packing, [&] { return noted_spheres(asked.packing, asked.limits, notes); });
@@ -173,6 +174,7 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
   const bool packs_held = std::ranges::any_of(robot.held, [](const auto& thing) { return !thing.spheres; });
   if (asked.spheres && !packs_held && std::ranges::count(spheres_of, nullptr) == 0)
     throw usage_error("--spheres", "is for links that are packed, and " + asked.packing + " has spheres for all");
+
   std::vector<body_source> sources;
   for (std::size_t k = 0; k < robot.description.parts().size(); ++k) {
     const io::robot_part& part = robot.description.parts()[k];
@@ -185,6 +187,7 @@ std::vector<body> make_bodies(const query_options& asked, const asked_robot& rob
   } catch (const std::runtime_error& error) {  // it names the link
     io::refuse(asked.robot, error.what());
   }
+
   note_packing(asked, account, notes);
   notes.insert(notes.end(), account.notes.begin(), account.notes.end());
   for (const attached_thing& thing : robot.held) bodies.push_back(make_held(asked, thing, shown, notes));

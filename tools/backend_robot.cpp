@@ -45,9 +45,10 @@ void backend_robot::join(all_ranks& all, const named_values& options) {
 
 double backend_robot::see(const std::vector<seen_points>& clouds) {
   std::vector<cloud> whole;
-  for (const seen_points& its : clouds)
-    std::visit([&](const auto& source) { whole.push_back(placed{source, its.pose}); }, its.points);
+  for (const seen_points& seen_cloud : clouds)
+    std::visit([&](const auto& source) { whole.push_back(placed{source, seen_cloud.pose}); }, seen_cloud.points);
   if (ranks_) whole = ranks_->share(whole);
+
   stopwatch clock;
   seen_clouds& seen = *seen_;
   seen = {};
@@ -60,14 +61,17 @@ double backend_robot::see(const std::vector<seen_points>& clouds) {
     some_uncertain = some_uncertain || sensor.kind != noise_kind::none || off.shift > 0 || off.turn > 0 ||
                      off.max_speed * off.age > 0;
     std::visit(
-        [&](const auto& here) {
-          seen.uncertain.push_back(placed{clearance::uncertain(here.source, sensor, off), here.pose});
-          seen.until_end.push_back(placed{clearance::uncertain(here.source, sensor, at_end), here.pose});
+        [&](const auto& placed_cloud) {
+          seen.uncertain.push_back(placed{clearance::uncertain(placed_cloud.source, sensor, off), placed_cloud.pose});
+          seen.until_end.push_back(
+              placed{clearance::uncertain(placed_cloud.source, sensor, at_end), placed_cloud.pose});
         },
         seen.as_measured[k]);
   }
-  const auto take = [&](const auto& all) {
-    for (const auto& one : all) std::visit([&](const auto& its) { seen.as_they_are.push_back(its); }, one);
+
+  const auto take = [&](const auto& chosen) {
+    for (const auto& one : chosen)
+      std::visit([&](const auto& placed_cloud) { seen.as_they_are.push_back(placed_cloud); }, one);
   };
   some_uncertain ? take(seen.uncertain) : take(seen.as_measured);
   return clock.lap();
@@ -80,8 +84,11 @@ Interface& backend_robot::prepared(const typename Interface::question_type& q, b
   if (!kept) {
     const auto make = maker<Interface>::on[on_device_];
     kept = std::shared_ptr<Interface>(make(other_volume ? memory_->other() : memory_->usual(), other_volume, q));
-    build = memory_->build, upload = memory_->upload;
-    without_field = memory_->without_field, fields = memory_->fields, fields_cached = memory_->fields_cached;
+    build = memory_->build;
+    upload = memory_->upload;
+    without_field = memory_->without_field;
+    fields = memory_->fields;
+    fields_cached = memory_->fields_cached;
   }
   return *static_cast<Interface*>(kept.get());
 }
@@ -114,18 +121,18 @@ reply backend_robot::least(poses_of poses) {
 reply backend_robot::least_per_part(poses_of poses, int repeat) {
   const auto found = together(poses, min_distance_per_part{}, [&](const min_distance_per_part& q) {
     auto& asked = prepared<any::query<min_distance_per_part, cloud>>(q, other_volume());
-    min_distance_per_part_result its;
+    min_distance_per_part_result result;
     double spent = 0;
     stopwatch clock;
     for (int round = 0; round < repeat && spent < 0.3; ++round) {
       asked.forget();
       clock.lap();
-      its = asked(poses, seen_->as_measured, q);
+      result = asked(poses, seen_->as_measured, q);
       const double seconds = clock.lap();
       spent += seconds;
       query = round == 0 ? seconds : std::min(query, seconds);
     }
-    return its;
+    return result;
   });
   return {found.all, found.parts};
 }
@@ -182,11 +189,11 @@ std::span<const part_facts> backend_robot::facts() { return memory_->facts(); }
 std::vector<motion_clearance_result> backend_robot::ways(std::span<const io::joint_motion> ways,
                                                          const motion_clearance_options& options) {
   const auto at = [&](poses_of poses) { return ask(poses, seen_->as_they_are, min_distance_per_part{}); };
-  const std::span<const part_facts> its = facts();
+  const std::span<const part_facts> parts = facts();
   stopwatch clock;
   std::vector<motion_clearance_result> all;
   for (const io::joint_motion& way : ways)
-    all.push_back(clearance::detail::over_motion(at, its, way, seen_->as_they_are, options));
+    all.push_back(clearance::detail::over_motion(at, parts, way, seen_->as_they_are, options));
   query = clock.lap();
   return all;
 }
@@ -204,15 +211,17 @@ motion_clearance_result hidden_way(const Ask& ask, std::span<const part_facts> f
     nothing_hides = found.all.state == state::free && found.all.part == none;
     min_distance_per_part_result made;
     made.all = found.all;
-    for (const unseen_part& its : found.parts) {
+    for (const unseen_part& part : found.parts) {
       made.parts.emplace_back();
-      made.parts.back().distance = its.lower;  // what is certain, parts' gaps and radii taken off
+      made.parts.back().distance = part.lower;  // what is certain, parts' gaps and radii taken off
     }
     return made;
   };
   auto found = clearance::detail::over_motion(least, facts, way, images, options);
   if (nothing_hides) {  // whatever the robot does
-    found.state = state::free, found.lower = infinity, found.settled = true;
+    found.state = state::free;
+    found.lower = infinity;
+    found.settled = true;
     return found;
   }
   if (found.state == state::collision) found.state = state::unknown;  // nobody knows what is there
@@ -225,8 +234,8 @@ motion_clearance_result hidden_way(const Ask& ask, std::span<const part_facts> f
 std::vector<motion_clearance_result> backend_robot::hidden_ways(std::span<const io::joint_motion> ways,
                                                                 const motion_clearance_options& options,
                                                                 const clearance::unseen& room) {
-  const std::span<const part_facts> its = facts();
-  std::vector<part_facts> facts(its.begin(), its.end());
+  const std::span<const part_facts> of_solids = facts();
+  std::vector<part_facts> facts(of_solids.begin(), of_solids.end());
   for (part_facts& part : facts)  // `unseen` has taken gaps and tolerances off
     part = {.center = part.center, .radius = rounded_up(solid_radius(part))};
   stopwatch clock;

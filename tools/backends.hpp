@@ -109,14 +109,15 @@ class backend_robot {
 
   /// The least distance, by the library's prepared query. In all questions `poses` are world-from-body.
   reply least(poses_of poses);
-  /// With that of every part. Asked up to `repeat` times from cold while that is quick; the time is the shortest.
+  /// The least distance of the robot and of every part. Asked up to `repeat` times from cold while that is quick; the
+  /// time is the shortest.
   reply least_per_part(poses_of poses, int repeat);
 
   // The next ones use trees of one volume per model, because their answers do not depend on it.
   /// The least distance as far as it is known after this many seconds; nothing about single parts.
   reply least_by(poses_of poses, double deadline);
   clearance::zones_result zones(poses_of poses, const clearance::zones& options);
-  /// `is_signed`: negative inside closed meshes; for triangles only.
+  /// Every point's distance. `is_signed`: negative inside closed meshes; for triangles only.
   clearance::point_distances distances(poses_of poses, double d_max, bool is_signed);
   /// The k nearest points of each part.
   clearance::nearest_k_result nearest(poses_of poses, std::size_t k, double d_max);
@@ -125,18 +126,20 @@ class backend_robot {
   clearance::supported_distance supported(poses_of poses, const clearance::min_distance_supported& options);
   /// What is certain of the least distance, by the clouds' sensors and one radius per part, or none.
   clearance::certain_distance_result certain(poses_of poses, std::span<const clearance::part_radius> parts);
-  /// About what the clouds hide, which must all be images. `until_end`: or may hide until the plan ends.
+  /// The least distance to what the clouds hide, which must all be images. `until_end`: or may hide until the plan
+  /// ends.
   clearance::unseen_result unseen(poses_of poses, const clearance::unseen& options, bool until_end);
   /// The witnesses of the minima of least_per_part.
   std::vector<clearance::part_witness> witnesses(poses_of poses, std::span<const clearance::part_minimum> minima);
   /// `poses`: those of one configuration after another.
   clearance::min_distances_result plan(poses_of poses, double d_max);
-  /// The same about all places where points may be until the plan ends, and parts that may be `radii` elsewhere.
+  /// `plan` about all places where points may be until the plan ends, and parts that may be `radii` elsewhere.
   clearance::min_distances_per_part_result certain_plan(poses_of poses, double d_max, const std::vector<double>& radii);
   /// How near the robot comes on each way.
   std::vector<clearance::motion_clearance_result> ways(std::span<const clearance::io::joint_motion> ways,
                                                        const clearance::motion_clearance_options& options);
-  /// The same about what the clouds hide, whose parts' radii are those of `room`. `unknown`: it may reach into that.
+  /// How near the robot comes, on each way, to what the clouds hide; the parts' radii are those of `room`.
+  /// `unknown`: the robot may reach into that.
   std::vector<clearance::motion_clearance_result> hidden_ways(std::span<const clearance::io::joint_motion> ways,
                                                               const clearance::motion_clearance_options& options,
                                                               const clearance::unseen& room);

@@ -14,7 +14,8 @@ struct image_size {
   bool operator==(const image_size&) const = default;
 };
 
-/// As the header of a PNG says; none if there is no such header, which whoever reads the file says.
+/// The size of an image as the header of a PNG says; none if there is no such header, which whoever reads the file
+/// says.
 std::optional<image_size> size_of(const std::string& file) {
   unsigned char head[24] = {};
   std::ifstream in(file, std::ios::binary);
@@ -43,7 +44,10 @@ void check_image_sizes(std::span<const cloud_options> clouds) {
     if (first && *size != expected)
       throw usage_error("--intrinsics", "are of one size of images, and " + words(first->file, expected) + ", but " +
                                             words(cloud.file, *size));
-    if (!first) first = &cloud, expected = *size;
+    if (!first) {
+      first = &cloud;
+      expected = *size;
+    }
   }
 }
 

@@ -49,10 +49,10 @@ struct wrong_joints {
   }
   std::vector<part_radius> radii(const std::vector<double>& joints, const io::joint_uncertainty& of,
                                  io::joint_options options) const {
-    auto all = io::part_radii(tree, links, placed, joints, of, options);
-    for (const part_radius& r : all)
+    auto found = io::part_radii(tree, links, placed, joints, of, options);
+    for (const part_radius& r : found)
       if (!(r.sum() <= 1e15)) throw usage_error("--joint-error", "and --joint-speed move a link by more than 1e15 m");
-    return all;
+    return found;
   }
 
   const io::kinematic_tree& tree;
@@ -121,8 +121,8 @@ std::vector<double> radii_between_rows(const query_options& asked, const asked_r
 cloud_uncertainty carried_off(const query_options& asked, const asked_robot& robot, const std::vector<double>& joints,
                               const std::string& link, const Eigen::Isometry3d& carrier, const seen_points& seen,
                               double off) {
-  cloud_uncertainty all = seen.off;
-  if (!asked.certain || link.empty()) return all;
+  cloud_uncertainty off_by = seen.off;
+  if (!asked.certain || link.empty()) return off_by;
   const io::kinematic_tree& tree = robot.description.kinematics();
   const auto errors = each_of("--joint-error", asked.certain->errors, tree),
              speeds = each_of("--joint-speed", asked.certain->speeds, tree);
@@ -130,15 +130,16 @@ cloud_uncertainty carried_off(const query_options& asked, const asked_robot& rob
   part_facts camera{.radius = 0};  // a ball around the sensor, which moves by at most the ball's radius
   camera = in_link(camera, carrier.inverse() * seen.pose * Eigen::Translation3d(sensor.x, sensor.y, sensor.z));
   const std::size_t links[] = {tree.link(link)};
-  all.shift +=
+  off_by.shift +=
       io::part_radii(tree, links, std::span(&camera, 1), joints, {errors, speeds, off}, {asked.ignore_limits})[0].sum();
   for (std::size_t at = links[0], j; (j = tree.joint_above(at)) != tree.none; at = tree.link(tree.joints()[j].parent)) {
     const io::joint& above = tree.joints()[j];
     if (above.kind == io::joint_kind::fixed || above.kind == io::joint_kind::prismatic) continue;
     const auto [value, factor] = std::pair(tree.drive(j).value, std::abs(tree.drive(j).factor));
-    all.turn += factor * ((errors.empty() ? 0 : errors[value]) + (speeds.empty() ? 0 : std::abs(speeds[value]) * off));
+    off_by.turn +=
+        factor * ((errors.empty() ? 0 : errors[value]) + (speeds.empty() ? 0 : std::abs(speeds[value]) * off));
   }
-  return all;
+  return off_by;
 }
 
 json certain_of(const certain_pair& pair, const std::vector<const observation*>& clouds) {

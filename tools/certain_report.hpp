@@ -7,13 +7,13 @@
 
 #include <clearance/questions/certain_distance.hpp>
 
-/// One radius per part, by --joint-error, --joint-speed and --delay. Empty: none was given. `off`: so many seconds are
-/// between the joints and the frame.
+/// One radius per part, by --joint-error, --joint-speed and --delay. Empty: none was given. `off`: seconds between
+/// the joints and the frame.
 std::vector<clearance::part_radius> radii_of(const query_options& asked, const asked_robot& robot,
                                              const std::vector<double>& joints,
                                              std::span<const clearance::part_facts> facts, double off = 0);
 
-/// The same summed, in metres, as questions take them.
+/// The sums of `radii_of`, in metres, as questions take them.
 std::vector<double> summed_radii(const query_options& asked, const asked_robot& robot,
                                  const std::vector<double>& joints, std::span<const clearance::part_facts> facts,
                                  double off = 0);
@@ -22,7 +22,7 @@ std::vector<double> summed_radii(const query_options& asked, const asked_robot& 
 std::vector<double> radii_in_rows(const query_options& asked, const asked_robot& robot,
                                   const std::vector<std::vector<double>>& rows,
                                   std::span<const clearance::part_facts> facts);
-/// And one that holds all the way from each row to the next.
+/// One radius per part that holds all the way from each row to the next.
 std::vector<double> radii_between_rows(const query_options& asked, const asked_robot& robot,
                                        const std::vector<std::vector<double>>& rows,
                                        std::span<const clearance::part_facts> facts);
@@ -35,10 +35,10 @@ clearance::cloud_uncertainty carried_off(const query_options& asked, const asked
 /// State and bracket, the pair that decides its lower end, and what it loses to what.
 json certain_of(const clearance::certain_distance_result& r, const std::vector<const observation*>& clouds,
                 const std::vector<body>& bodies);
-/// The same of one part.
+/// One pair: its lower end, and what it loses to what.
 json certain_of(const clearance::certain_pair& pair, const std::vector<const observation*>& clouds);
 
-/// Lines of the text.
+/// What is certain, as lines of the text.
 std::string certain_text(const clearance::certain_distance_result& r, const std::vector<body>& bodies);
 
 /// Adds a note if so many points may be anywhere.

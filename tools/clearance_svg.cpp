@@ -55,13 +55,17 @@ double top_of(const min_distance_result& r) {
 axes around(const svg_frames& drawn, std::optional<double> margin) {
   axes made{0, 0, 0, drawn.seen.size()};
   const auto hold = [&](double metres) {
-    if (std::isfinite(metres)) made.low = std::min(made.low, metres), made.high = std::max(made.high, metres);
+    if (std::isfinite(metres)) {
+      made.low = std::min(made.low, metres);
+      made.high = std::max(made.high, metres);
+    }
   };
   std::vector<double> tops;
   for (const auto* some : {&drawn.seen, &drawn.certain, &drawn.unseen})
     for (const min_distance_result& r : *some) {
       if (r.state == state::no_data) continue;
-      hold(std::min(0.0, double(r.distance))), hold(std::min(0.0, double(r.lower)));
+      hold(std::min(0.0, double(r.distance)));
+      hold(std::min(0.0, double(r.lower)));
       if (const double above = top_of(r); above > 0) tops.push_back(above);
     }
   std::sort(tops.begin(), tops.end());
@@ -168,6 +172,7 @@ std::string clearance_svg(const svg_frames& drawn, const std::string& name, std:
   const std::string legend =
       std::string("distance, in its bracket") + (certain.empty() ? "" : "; grey: with what is uncertain") +
       (unseen.empty() ? "" : "; orange: to what is not seen") + (blind.empty() ? "" : "; red: no data");
+
   std::string out =
       text(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" "
@@ -180,6 +185,7 @@ std::string clearance_svg(const svg_frames& drawn, const std::string& name, std:
       (above.empty() ? ""
                      : words(right, top - 12, "end", text("triangles: above the picture, up to %.3g m", to.highest))) +
       "</g>\n";
+
   if (!blind.empty()) out += "<g fill=\"#d33\" fill-opacity=\"0.35\">\n" + blind + "</g>\n";
   out += curve(to, certain).shaded("certain-", "#777") + curve(to, unseen).drawn("unseen-", "#e80", "#a50") +
          curve(to, frames).drawn("", "#48c", "#136");

@@ -46,27 +46,32 @@ void check_all_clouds(const cloud_options& all, const std::vector<cloud_options>
 
 namespace {
 
-/// kinect, stereo:F,B,S, tof:C,S or lidar:C,S.
+/// The noise that an option names: kinect, stereo:F,B,S, tof:C,S or lidar:C,S.
 clearance::any_noise sensor_of(const std::string& option, const std::string& text) {
   using clearance::real;
   const std::size_t at = text.find(':');
   const std::string kind = text.substr(0, at), rest = at == text.npos ? std::string() : text.substr(at + 1);
   clearance::any_noise sensor;
   const auto of = [&](std::size_t count, const char* what) { return numbers(option, rest, count, kind + ':' + what); };
+
   if (kind == "stereo") {
     const auto v = of(3, "F,B,S (focal length in pixels, baseline in m, deviation of a disparity in pixels)");
-    sensor.kind = clearance::noise_kind::stereo, sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
+    sensor.kind = clearance::noise_kind::stereo;
+    sensor.stereo = {real(v[0]), real(v[1]), real(v[2])};
   } else if (kind == "tof") {
     const auto v = of(2, "C,S (m, and m for each square metre)");
-    sensor.kind = clearance::noise_kind::tof, sensor.tof = {real(v[0]), real(v[1])};
+    sensor.kind = clearance::noise_kind::tof;
+    sensor.tof = {real(v[0]), real(v[1])};
   } else if (kind == "lidar") {
     const auto v = of(2, "C,S (m, and m for each metre)");
-    sensor.kind = clearance::noise_kind::lidar, sensor.lidar = {real(v[0]), real(v[1])};
+    sensor.kind = clearance::noise_kind::lidar;
+    sensor.lidar = {real(v[0]), real(v[1])};
   } else if (text == "kinect") {
     sensor.kind = clearance::noise_kind::kinect;
   } else {
     throw usage_error(option, clearance::io::quoted(text) + " is none of kinect, stereo:F,B,S, tof:C,S and lidar:C,S");
   }
+
   try {
     sensor.check(0);
   } catch (const std::invalid_argument& error) {
@@ -104,10 +109,12 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
     const auto v = numbers(option, text, 2, "DT,DTHETA");
     if (!(v[0] >= 0 && v[0] <= 1e15 && v[1] >= 0 && v[1] <= 1e15))
       throw usage_error(option, "needs 0 or more (metres, and radians)");
-    cloud.off.shift = v[0], cloud.off.turn = v[1];
+    cloud.off.shift = v[0];
+    cloud.off.turn = v[1];
   }
   if (option == "--use-viewpoint") cloud.use_viewpoint = true;
   if (option == "--zero-is-missing") cloud.zero_is_missing = true;
+
   if (cloud.file.empty()) cloud.given.push_back(option);
   if (!cloud.file.empty() && !cloud.is_image() && std::ranges::count(for_images, option))
     throw usage_error(option, "is for depth images, and " + cloud.file + " is none");
@@ -118,11 +125,11 @@ void set(cloud_options& cloud, const std::string& option, const std::string& tex
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> in_order(const CLI::App& app) {
-  std::vector<std::pair<std::string, std::string>> all;
+  std::vector<std::pair<std::string, std::string>> given;
   std::map<const CLI::Option*, std::size_t> taken;
   for (const CLI::Option* option : app.parse_order())
-    all.emplace_back(option->get_name(), option->results().at(taken[option]++));
-  return all;
+    given.emplace_back(option->get_name(), option->results().at(taken[option]++));
+  return given;
 }
 
 void check_given_once(const CLI::App& app) {

@@ -60,12 +60,12 @@ Eigen::Isometry3d pose(const std::string& option, const Eigen::Vector3d& transla
 }
 
 std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
-  std::string all;
+  std::string known;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (text == names[i]) return i;
-    all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    known += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
   }
-  throw usage_error(option, clearance::io::quoted(text) + " is not " + all);
+  throw usage_error(option, clearance::io::quoted(text) + " is not " + known);
 }
 
 namespace {
@@ -113,12 +113,12 @@ clearance::io::mesh_limits limits_of(const std::vector<std::string>& given) {
 }
 
 std::map<std::string, std::filesystem::path> packages_of(const std::vector<std::string>& given) {
-  std::map<std::string, std::filesystem::path> all;
+  std::map<std::string, std::filesystem::path> folders;
   for (const std::string& text : given) {
     const auto [name, folder] = assignment("--package", text, "name=DIR");
-    if (!all.emplace(name, folder).second) throw usage_error("--package", name + " is given twice");
+    if (!folders.emplace(name, folder).second) throw usage_error("--package", name + " is given twice");
   }
-  return all;
+  return folders;
 }
 
 std::optional<clearance::io::gltf_axis> gltf_axis_of(const std::string& given) {

@@ -64,6 +64,7 @@ inline std::vector<demo_part> make_demo_arm() {
       {"wrist", 0.12, 0.045, 0.050, 'z', 8},      {"flange", 0.10, 0.042, 0.044, 'y', 25},
       {"hand", 0.13, 0.036, 0.040, 'z', -10},
   };
+
   std::vector<demo_part> arm;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (const link& l : links) {

@@ -87,7 +87,10 @@ std::vector<body> make_arm(const demo_scene& world, const demo_settings& setting
 
   std::size_t spheres = 0;
   double gap = 0;
-  for (const body& b : bodies) spheres += b.packed.spheres.size(), gap = std::max(gap, b.packed.gap);
+  for (const body& b : bodies) {
+    spheres += b.packed.spheres.size();
+    gap = std::max(gap, b.packed.gap);
+  }
   std::printf("An arm of %zu parts: %zu triangles, %zu inner spheres (gap at most %.2f mm), made in %.1f s%s.\n",
               bodies.size(), triangles, spheres, 1e3 * gap, seconds,
               account.packed == 0 ? " from those that were kept" : "");

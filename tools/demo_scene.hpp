@@ -52,7 +52,10 @@ inline demo_hit hit(const demo_box& box, const Eigen::Vector3d& origin, const Ei
   for (int k = 0; k < 3; ++k) {
     const double one = (-box.half[k] - o[k]) / d[k], other = (box.half[k] - o[k]) / d[k];
     const double low = std::min(one, other), high = std::max(one, other);
-    if (low > enter) enter = low, face = k;
+    if (low > enter) {
+      enter = low;
+      face = k;
+    }
     leave = std::min(leave, high);
   }
   if (face < 0 || !(enter <= leave)) return {};

@@ -29,6 +29,7 @@ class distance_pieces {
     std::vector<std::uint8_t> red, green, blue;
     std::vector<std::uint32_t> cloud, point;
     std::vector<std::int32_t> part;
+
     while (positions.empty() && cloud_ < clouds_.files.size()) {
       const std::size_t end = std::min<std::size_t>(clouds_.files[cloud_].size(), begin_ + most);
       const auto placed = clouds_.files[cloud_].in_world(clouds_.carriers[cloud_], clouds_.seen[cloud_], begin_, end);
@@ -39,13 +40,22 @@ class distance_pieces {
         const auto byte = [](float value) { return std::uint8_t(std::lround(255 * value)); };
         positions.push_back(placed[i - begin_]);
         distance.push_back(d);
-        red.push_back(byte(shown.red)), green.push_back(byte(shown.green)), blue.push_back(byte(shown.blue));
-        cloud.push_back(std::uint32_t(cloud_)), point.push_back(std::uint32_t(i)),
-            part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
+        red.push_back(byte(shown.red));
+        green.push_back(byte(shown.green));
+        blue.push_back(byte(shown.blue));
+        cloud.push_back(std::uint32_t(cloud_));
+        point.push_back(std::uint32_t(i));
+        part.push_back(std::int32_t(found_.part[first_ + i]));  // none: -1
       }
+
       begin_ = end;
-      if (end == clouds_.files[cloud_].size()) begin_ = 0, first_ += end, ++cloud_;
+      if (end == clouds_.files[cloud_].size()) {
+        begin_ = 0;
+        first_ += end;
+        ++cloud_;
+      }
     }
+
     return {std::move(positions),
             {{"red", std::move(red)},
              {"green", std::move(green)},
@@ -71,7 +81,10 @@ class distance_pieces {
 distances_written write_distances(const query_options& asked, const asked_clouds& clouds,
                                   const point_distances& found) {
   distances_written made{.blue_at = blue_at(asked)};
-  for (const real d : found.distance) ++(std::isnan(d) ? made.left_out : made.points), made.beyond += std::isinf(d);
+  for (const real d : found.distance) {
+    ++(std::isnan(d) ? made.left_out : made.points);
+    made.beyond += std::isinf(d);
+  }
   char says[200];
   std::snprintf(says, sizeof says,
                 "distance in metres, inf beyond %g m; red at 0 m and inside, blue at %g m and beyond", asked.d_max,

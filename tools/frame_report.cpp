@@ -14,7 +14,11 @@ std::string part_columns(const frame_report& report) {
     const auto column = [&](const char* what) { out += ',' + csv_word((*report.bodies)[k].name + what); };
     column(" distance");
     if (report.certain) column(" certain_lower");
-    if (report.unseen) column(" unseen"), column(" unseen_lower"), column(" out_of_view");
+    if (report.unseen) {
+      column(" unseen");
+      column(" unseen_lower");
+      column(" out_of_view");
+    }
   }
   return out;
 }
@@ -30,9 +34,11 @@ std::string part_cells(const frame_report& report) {
     if (report.certain) cell(report.certain->parts[k].lower, report.certain->parts[k].part != none);
     if (!report.unseen) continue;
     const unseen_result& unseen = *report.unseen->found;
-    const unseen_part its = k < unseen.parts.size() ? unseen.parts[k] : unseen_part{};
+    const unseen_part hidden = k < unseen.parts.size() ? unseen.parts[k] : unseen_part{};
     const bool any = k < unseen.parts.size(), known = any && unseen.all.state != state::no_data;
-    cell(its.distance, known), cell(its.lower, known), cell(its.out_of_view, any);
+    cell(hidden.distance, known);
+    cell(hidden.lower, known);
+    cell(hidden.out_of_view, any);
   }
   return out;
 }
@@ -41,17 +47,22 @@ std::string part_cells(const frame_report& report) {
 
 std::string to_json(const frame_report& report) {
   json out = {{"frame", report.frame}, {"file", report.file}};
-  if (report.stamped) out["stamp"] = report.stamped->stamp, out["joints_off"] = report.stamped->joints.off;
+  if (report.stamped) {
+    out["stamp"] = report.stamped->stamp;
+    out["joints_off"] = report.stamped->joints.off;
+  }
   out.update(witness(report.found.result, report.cloud, report.point, *report.bodies));
   out["points"] = counts(report.found.result);
   out["upload_us"] = microseconds(report.upload);
   out["latency_us"] = microseconds(report.query);
+
   if (report.filter) out["filter"] = filter_of(*report.asked, *report.filter, report.found.result);
   if (report.certain) out["certain"] = certain_of(*report.certain, {report.cloud}, *report.bodies);
   if (report.unseen) {
     json& unseen = out["unseen"] = unseen_of(*report.unseen);
     unseen["latency_us"] = microseconds(report.unseen_query);
   }
+
   if (report.each_part()) out["parts"] = json::array();
   for (std::size_t k = 0; report.each_part() && k < report.bodies->size(); ++k) {
     json part = {{"name", (*report.bodies)[k].name}, {"distance", or_null(report.found.parts[k].distance)}};
@@ -59,6 +70,7 @@ std::string to_json(const frame_report& report) {
     if (report.unseen) part["unseen"] = unseen_of(*report.unseen, k);
     out["parts"].push_back(part);
   }
+
   if (report.plan) {
     json& plan = out["plan"] = outcome_of(*report.plan);
     plan["lower"] = json::array();
@@ -86,6 +98,7 @@ std::string to_csv(const frame_report& report) {
     if (report.plan && !report.plan->unseen.empty()) out += ",plan_unseen_lower,plan_unseen_at";
     out += '\n';
   }
+
   out += std::to_string(report.frame) + ',' + csv_word(report.file) + ',' +
          witness_cells(report.found.result, report.cloud, report.point, *report.bodies) + ',' +
          csv_word(microseconds(report.query));
@@ -96,14 +109,15 @@ std::string to_csv(const frame_report& report) {
            csv_word(or_null(report.certain->upper), report.certain->upper);
   if (report.unseen) out += ',' + unseen_cells(*report.unseen);
   out += part_cells(report);
+
   if (report.plan)
     for (const auto plan = outcome_of(*report.plan); const char* const name : {"least", "at", "first_below"})
       if (plan.contains(name)) out += ',' + csv_word(plan[name]);
   for (const auto& [what, any] : {std::pair("certain", report.plan && !report.plan->certain.empty()),
                                   {"unseen", report.plan && !report.plan->unseen.empty()}}) {
     if (!any) continue;
-    const json its = outcome_of(*report.plan)[what];
-    for (const char* const name : {"least_lower", "at"}) out += ',' + csv_word(its[name]);
+    const json outcome = outcome_of(*report.plan)[what];
+    for (const char* const name : {"least_lower", "at"}) out += ',' + csv_word(outcome[name]);
   }
   return out + '\n';
 }

@@ -27,6 +27,7 @@ int describe(const std::string& file, bool as_json) {
   std::vector<std::string> notes;
   const auto parts = clearance::io::within_memory(file, [&] { return noted_spheres(file, {}, notes); });
   say_notes(notes);
+
   json out = {{"file", file}, {"parts", json::array()}};
   std::string text = clearance::io::printable(file) + ": " + std::to_string(parts.size()) +
                      (parts.size() == 1 ? " part\n" : " parts\n");
@@ -45,6 +46,7 @@ int describe(const std::string& file, bool as_json) {
                             {"tolerance", part.tolerance},
                             {"seconds", certified ? json(p.seconds) : json(nullptr)},
                             {"solid", part.solid ? json(part.solid.hex()) : json(nullptr)}});
+
     char line[256];
     std::snprintf(line, sizeof line, "%zu spheres, radii %.6f to %.6f m, ", p.spheres.size(), p.radius_min,
                   p.radius_max);
@@ -56,6 +58,7 @@ int describe(const std::string& file, bool as_json) {
     if (part.solid) text += ", of mesh " + part.solid.hex().substr(0, 12);
     text += '\n';
   }
+
   std::cout << (as_json ? json_text(out, 2) : text);
   return 0;
 }
@@ -71,10 +74,12 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
     options.gltf_up = up;
     if (visual) options.geometry = clearance::io::robot_geometry::visual;
     const auto robot = clearance::io::load_robot(file, options);
-    parts = robot.parts(), notes = robot.notes();
+    parts = robot.parts();
+    notes = robot.notes();
   } else {
     parts.push_back({.name = std::filesystem::path(file).stem().string(), .mesh = noted_mesh(file, {}, up, notes)});
   }
+
   std::vector<body_source> sources;
   for (const auto& part : parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
   progress shown;
@@ -83,6 +88,7 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
   shown.clear();
   notes.insert(notes.end(), account.notes.begin(), account.notes.end());
   say_notes(notes);
+
   json out = {{"file", file}, {"parts", json::array()}};
   std::string text = clearance::io::printable(file) + ": " + std::to_string(bodies.size()) +
                      (bodies.size() == 1 ? " part\n" : " parts\n");
@@ -99,6 +105,7 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
                   to_string(b.closed.inside), b.closed.caps.loops, tolerance);
     text += name_column(b.name) + line;
   }
+
   std::cout << (as_json ? json_text(out, 2) : text);
   return 0;
 }
@@ -116,12 +123,14 @@ subcommand add_info(CLI::App& app) {
     std::vector<std::string> packages;
     bool json = false;
   };
+
   auto asked = std::make_shared<settings>();
   sub->add_option("FILE", asked->file, "Spheres (.ist, .yaml or .csv), a robot (.urdf) or a mesh");
   sub->add_option("--geometry", asked->geometry, geometry_says);
   sub->add_option("--package", asked->packages, package_says);
   sub->add_option("--gltf-up", asked->gltf_up, gltf_up_says);
   sub->add_flag("--json", asked->json, "Print one JSON object");
+
   return [asked] {
     const bool spheres = !clearance::io::spheres_format(asked->file).empty();
     if (!asked->file.empty() && !asked->file.ends_with(".urdf"))
@@ -136,6 +145,7 @@ subcommand add_info(CLI::App& app) {
       return clearance::io::within_memory(asked->file, [&] {
         return describe_solids(asked->file, asked->packages, gltf_axis_of(asked->gltf_up), visual, asked->json);
       });
+
     const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' +
                                 std::to_string(CLEARANCE_VERSION_MINOR) + '.' + std::to_string(CLEARANCE_VERSION_PATCH);
     const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -37,6 +37,7 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
     if (blank(word)) throw usage_error("the command line", "word " + std::to_string(i) + " of it is empty");
     for (const CLI::App* each : app.get_subcommands({}))
       if (!sub && each->check_name(word)) sub = each;
+
     const std::string name = word.substr(0, word.find('='));
     const CLI::Option* option = word.starts_with("--") ? (sub ? sub : &app)->get_option_no_throw(name) : nullptr;
     if (option && option->get_expected_max() == 0 && name.size() < word.size())
@@ -54,6 +55,7 @@ std::vector<std::string> checked_words(int argc, char** argv, const CLI::App& ap
     }
     words.push_back(word);
   }
+
   std::reverse(words.begin(), words.end());  // CLI11 takes them in reverse
   return words;
 }
@@ -113,11 +115,13 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "clearance " + version);
   app.require_subcommand(1);
   app.footer(exit_codes);
+
   std::vector<subcommand> run;
   for (const auto add : {add_query, add_run, add_plan, add_pack, add_demo, add_info}) run.push_back(add(app));
   std::string threads;
   add_threads(app, threads);
   take_one_value_each(app);
+
   try {
     auto words = checked_words(argc, argv, app);
     check_subcommand(argc, argv, app);

@@ -42,12 +42,14 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
     check_made(from, made.size(), sizeof(std::uint16_t), "pixels");
     return made;
   }
+
   io::cloud cloud = io::load_cloud(from.file, from.limits);
   check_made(from, cloud.points.size(), sizeof(Eigen::Vector3d) + sizeof(vec3), "points");
   if (from.cloud_scale != 1) {
     for (Eigen::Vector3d& p : cloud.points) p *= from.cloud_scale;
     if (cloud.viewpoint) cloud.viewpoint->translation *= from.cloud_scale;
   }
+
   std::uint64_t zeros = 0;
   for (Eigen::Vector3d& p : cloud.points) {
     if (!p.isZero(0)) continue;
@@ -58,6 +60,7 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
   if (!from.zero_is_missing && 100 * zeros > cloud.points.size())
     made.notes.push_back(from.file + ": " + std::to_string(zeros) + " of " + std::to_string(cloud.points.size()) +
                          " points are (0,0,0) and count as points; --zero-is-missing drops them");
+
   if (from.use_viewpoint && !cloud.viewpoint) throw usage_error("--use-viewpoint", from.file + " has no VIEWPOINT");
   if (cloud.viewpoint && !from.use_viewpoint) {
     const auto& [t, q] = *cloud.viewpoint;
@@ -69,6 +72,7 @@ observation observe(const cloud_options& from, std::set<std::string>& taken) {
       made.notes.push_back(from.file + says);
     }
   }
+
   made.data = std::move(cloud);
   return made;
 }

@@ -14,8 +14,8 @@ std::vector<std::string> given_of(const CLI::App& app, std::string_view word) {
   std::vector<std::string> names;
   for (const declared_option& option : option_table) {
     if (option.name != word && !(word == doubts && option.is == option_is::doubt)) continue;
-    const CLI::Option* its = app.get_option_no_throw(std::string(option.name));
-    if (its && its->count() > 0) names.emplace_back(option.name);
+    const CLI::Option* known = app.get_option_no_throw(std::string(option.name));
+    if (known && known->count() > 0) names.emplace_back(option.name);
   }
   return names;
 }
@@ -35,15 +35,15 @@ void check_needs(const CLI::App& app) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> given_alike(const CLI::App& app) {
-  std::vector<std::pair<std::string, std::string>> all;
+  std::vector<std::pair<std::string, std::string>> given;
   for (const declared_option& option : option_table) {
     if (option.is == option_is::course || option.is == option_is::file) continue;
-    auto& [name, values] = all.emplace_back(option.name, "");
-    const CLI::Option* its = app.get_option_no_throw(name);
-    if (its && its->count() > 0)
-      for (const std::string& value : its->results()) values += value + '\n';
+    auto& [name, values] = given.emplace_back(option.name, "");
+    const CLI::Option* known = app.get_option_no_throw(name);
+    if (known && known->count() > 0)
+      for (const std::string& value : known->results()) values += value + '\n';
   }
-  return all;
+  return given;
 }
 
 std::vector<std::string> check_together(const CLI::App& app) {

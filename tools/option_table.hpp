@@ -175,8 +175,8 @@ inline constexpr need_rule need_rules[] = {
 };
 
 constexpr bool is_doubt(std::string_view name) {
-  const auto* its = std::ranges::find(option_table, name, &declared_option::name);
-  return its != std::end(option_table) && its->is == option_is::doubt;
+  const auto* option = std::ranges::find(option_table, name, &declared_option::name);
+  return option != std::end(option_table) && option->is == option_is::doubt;
 }
 
 /// Is the rule about these two, in either order?

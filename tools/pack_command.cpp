@@ -59,6 +59,7 @@ subject load(const pack_settings& asked) {
     made.poses.push_back(Eigen::Isometry3d::Identity());
     return made;
   }
+
   made.robot = true;
   io::robot_options options;
   if (!asked.geometry.empty() && choice("--geometry", asked.geometry, {"collision", "visual"}) == 1)
@@ -68,12 +69,14 @@ subject load(const pack_settings& asked) {
   options.strict = asked.strict;
   options.gltf_up = gltf_axis_of(asked.gltf_up);
   options.limits = limits_of(asked.mesh_limits);
+
   const io::robot robot = io::load_robot(asked.input, options);
   const auto& tree = robot.kinematics();
   const auto joints = asked.joints.empty() ? tree.configuration({}, {}) : numbers("--joints", asked.joints);
   if (joints.size() != tree.size())
     throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints, here are " +
                                       std::to_string(joints.size()) + " values");
+
   made.poses = robot.poses(joints);
   made.parts = robot.parts();
   made.notes = robot.notes();
@@ -88,14 +91,19 @@ packed_subject fill(const subject& what, const pack_settings& asked, progress& s
     to = number(option, text);
     if (!(to > 0)) throw usage_error(option, "must be above 0");
   };
+
   positive("--gap", asked.gap, how.pack.gap_target);
   positive("--smallest-radius", asked.radius, how.pack.smallest_radius);
   positive("--seconds", asked.seconds, how.pack.seconds);
   if (!asked.seed.empty()) how.pack.seed = whole_number("--seed", asked.seed);
   how.pack.allow_overlap = asked.overlap;
   how.sheets = what.robot;  // for a mesh, the user wants to know that nothing fits
-  if (is_device(asked.backend)) how.maker = "device", how.make = pack_on_device;
+  if (is_device(asked.backend)) {
+    how.maker = "device";
+    how.make = pack_on_device;
+  }
   how.cache = chosen_cache(asked.no_cache, asked.cache);
+
   std::vector<body_source> sources;
   for (const io::robot_part& part : what.parts) sources.push_back({part.name, &part.mesh, part.tessellation_error});
   packed_subject made;
@@ -178,8 +186,12 @@ void print_all(const packed_subject& made) {
                       1e3 * p.gap_mean, 1e3 * p.gap_p95, 1e3 * p.gap, 1e3 * p.radius_min, 1e3 * p.radius_max,
                       made.bodies[k].closed.caps.loops, p.seconds, made.cached[k] ? " (cached)" : "");
     const double n = double(made.bodies.size());
-    fill += p.fill / n, mean += p.gap_mean / n, p95 += p.gap_p95 / n, most = std::max(most, p.gap);
-    cached += made.cached[k], spheres += p.spheres.size();
+    fill += p.fill / n;
+    mean += p.gap_mean / n;
+    p95 += p.gap_p95 / n;
+    most = std::max(most, p.gap);
+    cached += made.cached[k];
+    spheres += p.spheres.size();
   }
   std::cout << name("all")
             << text("  %7zu  %.3f       %6.2f %6.2f %6.2f  %24s%7.2f\n", spheres, fill, 1e3 * mean, 1e3 * p95,
@@ -191,6 +203,7 @@ int run(const pack_settings& asked) {
   for (const std::string& file : asked.out)
     if (!ends(file, ".glb") && io::spheres_format(file).empty())
       throw usage_error("--out", file + " is none of .ist, .csv, .yaml, .yml and .glb by its name");
+
   progress shown;
   shown.show("reading " + asked.input);
   io::files_read inputs;
@@ -198,11 +211,13 @@ int run(const pack_settings& asked) {
   check_kept(chosen_cache(asked.no_cache, asked.cache), !asked.cache.empty(), what.notes);
   for (const std::string& file : asked.out) io::check_output(file, inputs);
   const packed_subject made = fill(what, asked, shown);
+
   for (const std::string& file : asked.out) {
     shown.show("writing " + file);
     io::check_output(file, inputs);
     write(file, what, made);
   }
+
   shown.clear();
   say_notes(what.notes);
   say_notes(made.notes);
@@ -233,6 +248,7 @@ subcommand add_pack(CLI::App& app) {
   const auto one = [&](const std::string& name, std::string& to, const std::string& says) {
     return sub->add_option(name, to, says);
   };
+
   one("INPUT", asked->input, "A mesh (.stl .obj .ply .off .dae .glb) or a robot (.urdf)")->required();
   one("--spheres", asked->spheres, "How many per part; fewer if no more fit")->required();
   sub->add_option(

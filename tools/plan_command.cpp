@@ -61,43 +61,48 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   shown.show("asking about " + std::to_string(rows.size()) + " configurations");
   const asked_model model{asked.model, asked.volume, &bodies, fields,
                           chosen_cache(asked.no_cache, asked.cache).folder()};
-  auto there = robot_on(asked.on_device, model);
-  if (ranks) there->join(*ranks, asked.alike);
-  report.upload = there->see(clouds.seen);
+  auto robot_there = robot_on(asked.on_device, model);
+  if (ranks) robot_there->join(*ranks, asked.alike);
+  report.upload = robot_there->see(clouds.seen);
+
   std::vector<double> radii;
-  if (asked.certain) check_d_max(asked, radii = radii_in_rows(asked, robot, rows, there->facts()));
-  report.found = ask_plan(*there, placed, asked.d_max, report.query);
+  if (asked.certain) check_d_max(asked, radii = radii_in_rows(asked, robot, rows, robot_there->facts()));
+  report.found = ask_plan(*robot_there, placed, asked.d_max, report.query);
   note_scale(clouds.seen, bodies, placed.first().first(bodies.size()), report.found.of[0], notes);
   if (asked.certain) {
-    report.certain = ask_certain_plan(*there, placed, asked.d_max, radii, report.query);
+    report.certain = ask_certain_plan(*robot_there, placed, asked.d_max, radii, report.query);
     note_anywhere(report.certain[0].anywhere, notes);
   }
   if (asked.unseen) {
     shown.show("asking about what is hidden");
-    report.unseen =
-        ask_plan_unseen(*there, placed, {.room = *asked.unseen, .radii = radii}, bodies.size(), false, report.query);
+    report.unseen = ask_plan_unseen(*robot_there, placed, {.room = *asked.unseen, .radii = radii}, bodies.size(), false,
+                                    report.query);
   }
+
   if (asked.between) {
     shown.show("asking about the ways between them");
     // With a margin only as exact as the decision needs; otherwise to a centimetre.
     motion_clearance_options options{.tolerance = asked.margin ? double(infinity) : 0.01,
                                      .margin = asked.margin.value_or(0),
-                                     .radii = radii_between_rows(asked, robot, rows, there->facts())};
+                                     .radii = radii_between_rows(asked, robot, rows, robot_there->facts())};
     const auto ways = ways_between(asked, robot, rows);
-    report.ways = there->ways(ways, options);
-    report.query += there->query;
+    report.ways = robot_there->ways(ways, options);
+    report.query += robot_there->query;
     if (asked.unseen) {
       const unseen room{.room = *asked.unseen, .radii = std::exchange(options.radii, {})};
-      report.hidden = there->hidden_ways(ways, options, room);
-      report.query += there->query;
+      report.hidden = robot_there->hidden_ways(ways, options, room);
+      report.query += robot_there->query;
     }
   }
+
   if (ranks) ranks->part();
   if (ranks && !ranks->speaks()) return 0;
-  report.build = there->build;
-  report.fields = there->fields, report.fields_cached = there->fields_cached;
-  report.upload += there->upload;
+  report.build = robot_there->build;
+  report.fields = robot_there->fields;
+  report.fields_cached = robot_there->fields_cached;
+  report.upload += robot_there->upload;
   shown.clear();
+
   if (asked.csv && asked.margin) {
     const auto first = report.first_below();
     notes.push_back(asked.configurations +
@@ -113,7 +118,7 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
       notes.push_back(asked.configurations + ": on the way from row " + std::to_string(*way) +
                       " to the next what is hidden may be within the margin");
   }
-  note_fields(*there, bodies, notes);
+  note_fields(*robot_there, bodies, notes);
   say_notes(notes);
   std::cout << (asked.csv ? to_csv(report) : to_json(report));
   return report.code();

@@ -54,7 +54,7 @@ std::optional<std::size_t> first_within(const std::vector<motion_clearance_resul
   return std::nullopt;
 }
 
-/// Of all ways.
+/// The report on all ways.
 json worst_of(const plan_report& report, const std::vector<motion_clearance_result>& ways) {
   const auto worst = std::ranges::min_element(ways, {}, &motion_clearance_result::lower);
   const bool some = !report.blind() && worst != ways.end();
@@ -87,35 +87,37 @@ std::optional<std::size_t> plan_report::first_hidden_below() const {
 }
 
 unseen_report plan_report::of_unseen(std::size_t row) const {
-  unseen_report its{.asked = asked, .found = &unseen[row], .clouds = {}, .bodies = bodies};
-  for (const observation& cloud : *clouds) its.clouds.push_back(&cloud);
-  return its;
+  unseen_report made{.asked = asked, .found = &unseen[row], .clouds = {}, .bodies = bodies};
+  for (const observation& cloud : *clouds) made.clouds.push_back(&cloud);
+  return made;
 }
 
 json outcome_of(const plan_report& report) {
-  const auto& all = report.found.of;
-  const auto least = std::ranges::min_element(all, {}, [](const min_distance_result& r) { return r.distance; });
+  const auto& rows = report.found.of;
+  const auto least = std::ranges::min_element(rows, {}, [](const min_distance_result& r) { return r.distance; });
   const bool any = !report.blind() && std::isfinite(least->distance);
-  json out = {{"rows", all.size()},
+  json out = {{"rows", rows.size()},
               {"least", any ? json(least->distance) : json(nullptr)},
-              {"at", any ? json(least - all.begin()) : json(nullptr)}};
+              {"at", any ? json(least - rows.begin()) : json(nullptr)}};
+
   if (report.asked->margin) {
     const auto first = report.first_below();
     out["first_below"] = first ? json(*first) : json(nullptr);
   }
   if (!report.certain.empty()) {
-    const auto its = std::ranges::min_element(report.certain, {}, &certain_row::lower);
-    out["certain"] = {{"least_lower", report.blind() ? json(nullptr) : or_null(its->lower)},
-                      {"at", report.blind() ? json(nullptr) : json(its - report.certain.begin())}};
+    const auto worst = std::ranges::min_element(report.certain, {}, &certain_row::lower);
+    out["certain"] = {{"least_lower", report.blind() ? json(nullptr) : or_null(worst->lower)},
+                      {"at", report.blind() ? json(nullptr) : json(worst - report.certain.begin())}};
   }
   if (!report.unseen.empty()) {
-    const auto its = std::ranges::min_element(report.unseen, {}, [](const unseen_result& r) { return r.all.lower; });
-    out["unseen"] = {{"least_lower", or_null(its->all.lower)}, {"at", its - report.unseen.begin()}};
+    const auto worst = std::ranges::min_element(report.unseen, {}, [](const unseen_result& r) { return r.all.lower; });
+    out["unseen"] = {{"least_lower", or_null(worst->all.lower)}, {"at", worst - report.unseen.begin()}};
     if (report.asked->margin) {
       const auto first = report.first_hidden_below();
       out["unseen"]["first_below"] = first ? json(*first) : json(nullptr);
     }
   }
+
   if (!report.asked->between) return out;
   out["ways"] = worst_of(report, report.ways);
   if (report.asked->unseen) out["ways"]["unseen"] = worst_of(report, report.hidden);
@@ -133,11 +135,12 @@ std::string to_json(const plan_report& report) {
     if (k < report.ways.size()) row["way"] = way_of(report, k);
     out += json_text(row, -1);
   }
+
   json last = {{"plan", outcome_of(report)}};
   if (report.asked->margin) last["check"] = {{"margin", *report.asked->margin}, {"passes", report.code() == 0}};
-  min_distance_result all = report.found.of[0];
-  for (const observation& cloud : *report.clouds) cloud.recount(all);
-  last["points"] = counts(all);
+  min_distance_result counted = report.found.of[0];
+  for (const observation& cloud : *report.clouds) cloud.recount(counted);
+  last["points"] = counts(counted);
   last["clouds"] = json::array();
   for (const observation& cloud : *report.clouds) last["clouds"].push_back(about_cloud(cloud));
   last["model"] = to_string(report.asked->model);
@@ -158,6 +161,7 @@ std::string to_csv(const plan_report& report) {
       (report.unseen.empty() ? "" : std::string(",") + unseen_columns) +
       (report.asked->between ? ",way_state,way_lower,way_upper,way_time,way_from,way_to,way_part" : "") +
       (report.asked->between && report.asked->unseen ? ",way_unseen_state,way_unseen_lower,way_unseen_part\n" : "\n");
+
   for (std::size_t k = 0; k < report.found.of.size(); ++k) {
     const min_distance_result& r = report.found.of[k];
     out += std::to_string(k) + ',' + witness_cells(r, cloud_of(report, r), r.point, *report.bodies);

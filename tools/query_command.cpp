@@ -42,12 +42,12 @@ std::vector<part_gradient> gradients(const query_options& asked, const asked_rob
                                      std::span<const part_witness> witnesses) {
   const io::kinematic_tree& tree = robot.description.kinematics();
   const std::vector<Eigen::Isometry3d> links = all_links(asked, robot.description, joints);
-  std::vector<part_gradient> all;
+  std::vector<part_gradient> made;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    all.push_back({gradient(witnesses[k], Eigen::Vector3d(poses[k].translation())), {}});
-    all.back().of_joints = io::joint_gradient(tree, links, robot.link_of(k), all.back().of_pose);
+    made.push_back({gradient(witnesses[k], Eigen::Vector3d(poses[k].translation())), {}});
+    made.back().of_joints = io::joint_gradient(tree, links, robot.link_of(k), made.back().of_pose);
   }
-  return all;
+  return made;
 }
 
 /// What the images hide, and the way behind the pixel that hides it nearest to the robot.
@@ -57,12 +57,12 @@ void draw_unseen(const query_report& report, const asked_clouds& clouds, io::sce
   if (report.filter) labels = report.filter->labels;
   for (std::size_t i = 0; i < clouds.files.size(); ++i) {
     const auto& image = std::get<depth_image<std::uint16_t>>(clouds.seen[i].points);
-    const auto its = labels.first(std::min(labels.size(), image.size()));
+    const auto labels_of_image = labels.first(std::min(labels.size(), image.size()));
     scene.bodies.push_back({.name = clouds.files[i].name + " hides",
-                            .mesh = io::hidden_mesh(image, *report.asked->unseen, its),
+                            .mesh = io::hidden_mesh(image, *report.asked->unseen, labels_of_image),
                             .pose = clouds.seen[i].pose,
                             .paint = {0.5f, 0.3f, 0.6f, 0.25f}});
-    labels = labels.subspan(its.size());
+    labels = labels.subspan(labels_of_image.size());
   }
   if (r.cloud == none) return;
   const hidden source{std::get<depth_image<std::uint16_t>>(clouds.seen[r.cloud].points), *report.asked->unseen, 0};
@@ -85,6 +85,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   // A glTF file holds floats, so a scene far away is drawn relative to its robot.
   const Eigen::Vector3d base = report.asked->base.translation();
   if (base.norm() > 1000) scene.origin = base;
+
   const io::colour nearest{0.95f, 0.6f, 0.2f, 1};
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const attached_thing* held = robot.held_as(k);
@@ -99,6 +100,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
     scene.bodies.push_back({.name = (*report.bodies)[k].name, .mesh = mesh, .pose = poses[k]});
     if (r.part == k) scene.bodies.back().paint = nearest;
   }
+
   std::size_t first = 0;
   for (std::size_t i = 0; i < clouds.files.size(); ++i) {
     scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
@@ -109,6 +111,7 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
                               .pose = clouds.seen[i].pose,
                               .paint = {0.55f, 0.55f, 0.55f, 1}});
   }
+
   if (r.state != state::no_data)
     scene.segments.push_back(
         {.name = "witness", .from = {r.nearest.x, r.nearest.y, r.nearest.z}, .to = {r.at.x, r.at.y, r.at.z}});
@@ -183,22 +186,28 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.bodies = &bodies;
   shown.show("asking");
   const asked_model model{asked.model, asked.volume, &bodies};
-  auto there = robot_on(asked.on_device, model);
-  if (ranks) there->join(*ranks, asked.alike);
-  report.upload = there->see(clouds.seen);
+  auto robot_there = robot_on(asked.on_device, model);
+  if (ranks) robot_there->join(*ranks, asked.alike);
+  report.upload = robot_there->see(clouds.seen);
+
   if (asked.self_filter) {
-    own_points own = hide_own_points(asked, *there, poses, clouds, summed_radii(asked, robot, joints, there->facts()));
-    report.filter = std::move(own.filter), report.unseen = std::move(own.unseen), report.upload += own.upload;
+    own_points own =
+        hide_own_points(asked, *robot_there, poses, clouds, summed_radii(asked, robot, joints, robot_there->facts()));
+    report.filter = std::move(own.filter);
+    report.unseen = std::move(own.unseen);
+    report.upload += own.upload;
     note_hidden(asked, report.notes);
   }
-  ask_questions(report, *there, poses, joints);
+
+  ask_questions(report, *robot_there, poses, joints);
   note_scale(clouds.seen, bodies, poses, report.found.result, report.notes);
   std::optional<point_distances> distances;
-  if (!asked.distances.empty()) distances = there->distances(poses, asked.d_max, asked.is_signed);
+  if (!asked.distances.empty()) distances = robot_there->distances(poses, asked.d_max, asked.is_signed);
   if (ranks) ranks->part();
   if (!speaks) return 0;
-  report.build = there->build;
-  report.upload += there->upload;
+
+  report.build = robot_there->build;
+  report.upload += robot_there->upload;
   if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen
     for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
   check_outputs(asked, inputs);

@@ -93,7 +93,8 @@ clearance::hiding room_of(const std::string& option, const std::string& text) {
   if (at == text.npos)
     throw usage_error(option, clearance::io::quoted(text) + " is not of the form NEAR:FAR, such as 0.1:10");
   const double from = number(option, text.substr(0, at)), to = number(option, text.substr(at + 1));
-  room.nearest = clearance::real(from), room.farthest = clearance::real(to);
+  room.nearest = clearance::real(from);
+  room.farthest = clearance::real(to);
   if (!(room.nearest > 0 && room.nearest < room.farthest && to <= 1e6))
     throw usage_error(option, "needs 0 < NEAR < FAR <= 1e6 (metres along z)");
   return room;
@@ -137,18 +138,21 @@ void read_uncertainty(const raw_options& raw, query_options& o) {
   const double later = raw.plan_time.empty() ? 0 : amount("--plan-time", raw.plan_time, "seconds");
   const bool alone = !raw.configurations.empty();
   const auto each = [](const char* option, const std::string& text) {
-    std::vector<double> all;
-    if (!text.empty()) all = numbers(option, text);
-    return all;
+    std::vector<double> values;
+    if (!text.empty()) values = numbers(option, text);
+    return values;
   };
-  off.errors = each("--joint-error", raw.joint_error), off.speeds = each("--joint-speed", raw.joint_speed);
+  off.errors = each("--joint-error", raw.joint_error);
+  off.speeds = each("--joint-speed", raw.joint_speed);
   for (const double x : off.errors)
     if (!(x >= 0)) throw usage_error("--joint-error", "needs 0 or more (rad, m)");
   if (!raw.sensors.empty() || !raw.calibrations.empty() || !raw.max_speed.empty() || !raw.joint_error.empty() ||
       !raw.joint_speed.empty())
     o.certain = off;
   const auto set_age = [&](cloud_options& cloud) {
-    cloud.off.max_speed = speed, cloud.off.age = off.delay + (alone ? later : 0), cloud.later = alone ? 0 : later;
+    cloud.off.max_speed = speed;
+    cloud.off.age = off.delay + (alone ? later : 0);
+    cloud.later = alone ? 0 : later;
   };
   set_age(o.recording.camera);
   for (cloud_options& cloud : o.clouds) set_age(cloud);
@@ -171,6 +175,7 @@ void read_questions(const raw_options& raw, query_options& o) {
     if (!(*o.margin >= 0))
       throw usage_error("--check", "must not be negative (metres): the lower end is 0 in a collision, too");
   }
+
   if (!raw.zones.empty()) o.zones = thresholds("--zones", raw.zones);
   if (!raw.min_points.empty()) o.min_points = whole_number("--min-points", raw.min_points);
   o.distances = raw.distances;
@@ -187,6 +192,7 @@ void read_questions(const raw_options& raw, query_options& o) {
     for (const cloud_options& cloud : o.clouds) cloud.check_hides();
   }
   if (!raw.support_limit.empty()) o.support->most = whole_number("--support-limit", raw.support_limit, most_listed);
+
   o.gradient = raw.gradient;
   o.configurations = raw.configurations;
   o.csv = raw.csv;
@@ -196,6 +202,7 @@ void read_questions(const raw_options& raw, query_options& o) {
     const std::size_t how = raw.fields->empty() ? 0 : choice("--fields", *raw.fields, {"on", "off", "auto"});
     if (how != 2) o.fields = how == 0;
   }
+
   o.recording.svg = raw.svg;
   if (!raw.svg.empty() && clearance::io::extension(raw.svg) != ".svg")
     throw usage_error("--svg", raw.svg + ": its name must end in .svg, which is what is written");
@@ -231,6 +238,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   query_options o;
   o.notes = check_together(app);
   o.alike = given_alike(app);
+
   o.robot = raw.robot;
   if (!raw.joints.empty()) o.joints = numbers("--joints", raw.joints);
   for (const auto& text : raw.joint) {
@@ -240,6 +248,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
     o.joint.emplace_back(name, number("--joint " + name, value));
   }
   if (!o.joints.empty() && !o.joint.empty()) throw usage_error("--joints", "cannot be mixed with --joint");
+
   o.ignore_limits = raw.ignore_limits;
   o.strict = raw.strict;
   if (!raw.geometry.empty()) o.visual = choice("--geometry", raw.geometry, {"collision", "visual"}) == 1;
@@ -251,11 +260,13 @@ query_options read(const CLI::App& app, const raw_options& raw) {
     o.recording.camera.limits.unfolded = std::uint64_t(whole_number("--unfold-limit", raw.unfolded)) << 20;
   o.clouds = clouds_of(app, o.recording.camera);
   o.attached = attached_of(app);
+
   o.recording.frames = raw.frames;
   o.recording.trajectory = raw.trajectory;
   o.recording.stamps = raw.stamps;
   if (!raw.max_age.empty()) o.recording.max_age = amount("--max-age", raw.max_age, "seconds");
   o.recording.merge = raw.merge;
+
   o.model = model_kind(choice("--model", raw.model, {"spheres", "triangles"}));
   o.volume = usual_volume(o.model);
   if (!raw.volume.empty()) o.volume = volume_kind(choice("--volume", raw.volume, {"sphere", "aabb", "obb"}));
@@ -267,6 +278,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   o.json = raw.json;
   o.scene = raw.scene;
+
   read_uncertainty(raw, o);
   read_questions(raw, o);
   check_model(o);
@@ -469,6 +481,7 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
       "a,b,... (m, ascending): how many points may be within these distances of each link, and which; exit code 2 if "
       "there are any in the first; with --sensor and its kin wherever points and links may be");
   app.add_option("--min-points", raw.min_points, "A zone with fewer points counts as empty (default 1)");
+
   app.add_option(
       "--distances", raw.distances,
       "Write every valid point with its distance to this .ply file, in world coordinates; red at 0 m, blue at --d-max "

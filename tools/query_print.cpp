@@ -41,7 +41,7 @@ json distances_of(const query_report& report) {
           {"blue_at", report.distances->blue_at}};
 }
 
-/// Where there is a valid point: the state, and the nearest point with its place on the robot.
+/// The state, and the nearest point with its place on the robot, if there is a valid point.
 std::string witness_text(const query_report& report) {
   const min_distance_result& r = report.found.result;
   const observation& cloud = (*report.clouds)[r.cloud];

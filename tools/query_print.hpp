@@ -6,5 +6,5 @@
 /// One JSON object and a line end.
 std::string to_json(const query_report& report);
 
-/// As text for people.
+/// The report as text for people.
 std::string to_text(const query_report& report);

@@ -40,9 +40,9 @@ struct query_report {
   std::vector<std::string> notes;
 
   std::vector<const observation*> all_clouds() const {
-    std::vector<const observation*> all;
-    for (const observation& cloud : *clouds) all.push_back(&cloud);
-    return all;
+    std::vector<const observation*> listed;
+    for (const observation& cloud : *clouds) listed.push_back(&cloud);
+    return listed;
   }
   /// Is the lower end of the bracket above the margin of --check? With uncertainty, that of what is certain.
   bool passes() const {

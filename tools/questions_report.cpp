@@ -18,7 +18,7 @@ json place(const query_report& report, std::uint32_t cloud, std::uint32_t point)
 }  // namespace
 
 json zones_of(const query_report& report, std::size_t part) {
-  json all = json::array();
+  json zones = json::array();
   for (std::size_t z = 0; z < report.zones->per_part; ++z) {
     const zone& found = report.zones->of(part, z);
     json one = {{"within", report.asked->zones[z]}, {"points", found.points}, {"nearest", nullptr}, {"first", nullptr}};
@@ -27,23 +27,24 @@ json zones_of(const query_report& report, std::size_t part) {
       one["nearest"].update(place(report, found.nearest_cloud, found.nearest_point));
       one["first"] = place(report, found.first_cloud, found.first_point);
     }
-    all.push_back(std::move(one));
+    zones.push_back(std::move(one));
   }
-  return all;
+  return zones;
 }
 
 json nearest_of(const query_report& report, std::size_t part) {
-  json all = json::array();
+  json pairs = json::array();
   for (const pair_distance& pair : report.nearest->of(part)) {
     if (pair.point == none) break;  // the list has ended
     json one = place(report, pair.cloud, pair.point);
     const auto at = pixel((*report.clouds)[pair.cloud], pair.point);
     one["pixel"] = at ? json{at->first, at->second} : json(nullptr);
-    one["distance"] = or_null(pair.distance), one["lower"] = report.nearest->certain.lower(pair);
+    one["distance"] = or_null(pair.distance);
+    one["lower"] = report.nearest->certain.lower(pair);
     one["primitive"] = pair.primitive == none ? json(nullptr) : json(pair.primitive);
-    all.push_back(std::move(one));
+    pairs.push_back(std::move(one));
   }
-  return all;
+  return pairs;
 }
 
 json gradient_of(const query_report& report, std::size_t part) {

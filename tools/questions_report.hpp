@@ -14,6 +14,6 @@ json gradient_of(const query_report& report, std::size_t part);
 /// For the whole robot: each answer becomes an object named after its question.
 void add_questions(const query_report& report, json& out);
 
-/// The same as text: one line per question, and the text after the list of parts.
+/// The answers as text: one line per question, and the text after the list of parts.
 std::string questions_text(const query_report& report);
 std::string parts_text(const query_report& report);

@@ -31,50 +31,55 @@ struct parts_of_triangles {
 
 /// Joins the witnesses of each rank's own minima.
 struct joined_witnesses {
-  std::vector<part_witness> all;
+  std::vector<part_witness> joined;
 
-  void add(const std::vector<part_witness>& its, const piece_place& place) {
-    all.resize(its.size());
-    for (std::size_t k = 0; k < its.size(); ++k) {
-      if (its[k].part == none) continue;
-      all[k] = its[k];
-      all[k].point += place.first[all[k].cloud];
+  void add(const std::vector<part_witness>& of_rank, const piece_place& place) {
+    joined.resize(of_rank.size());
+    for (std::size_t k = 0; k < of_rank.size(); ++k) {
+      if (of_rank[k].part == none) continue;
+      joined[k] = of_rank[k];
+      joined[k].point += place.first[joined[k].cloud];
     }
   }
-  std::vector<part_witness> result() { return std::move(all); }
+  std::vector<part_witness> result() { return std::move(joined); }
 };
 
-/// Of what decides every distance to the robot, but for its poses.
+/// The digest of what decides every distance to the robot, but for its poses.
 io::digest digest_of(const std::vector<body>& bodies) {
-  io::byte_writer all;
-  for (const body& its : bodies) {
-    all.put(its.name), all.put(its.tolerance), all.put(its.packed.gap), all.put(its.packed.tolerance);
-    for (const std::uint8_t b : io::digest_of(its.closed).bytes) all.put(b);
-    for (const inner_sphere& s : its.packed.spheres) {
-      for (const real x : {s.center.x, s.center.y, s.center.z, s.radius}) all.put(x);
+  io::byte_writer out;
+  for (const body& one : bodies) {
+    out.put(one.name);
+    out.put(one.tolerance);
+    out.put(one.packed.gap);
+    out.put(one.packed.tolerance);
+    for (const std::uint8_t b : io::digest_of(one.closed).bytes) out.put(b);
+    for (const inner_sphere& s : one.packed.spheres) {
+      for (const real x : {s.center.x, s.center.y, s.center.z, s.radius}) out.put(x);
     }
   }
-  return io::digest_of(all.bytes());
+  return io::digest_of(out.bytes());
 }
 
-/// Of a cloud's records, of which of them count, and of its pose.
+/// The digest of a cloud's records, of which of them count, and of its pose.
 template <class S>
 io::digest digest_of(const S& cloud, const Eigen::Isometry3d& pose) {
-  io::byte_writer all;
+  io::byte_writer out;
   const auto records = cloud.bytes();
   for (const std::uint8_t b :
        io::digest_of(std::string_view(reinterpret_cast<const char*>(records.data()), records.size())).bytes)
-    all.put(b);
-  for (const double x : pose.matrix().reshaped()) all.put(x);
+    out.put(b);
+  for (const double x : pose.matrix().reshaped()) out.put(x);
   if constexpr (requires { cloud.filter; }) {
-    all.put(double(cloud.filter.nearest)), all.put(double(cloud.filter.farthest));
+    out.put(double(cloud.filter.nearest));
+    out.put(double(cloud.filter.farthest));
   } else {
     for (const real x :
          {cloud.inverse_fx, cloud.inverse_fy, cloud.cx, cloud.cy, cloud.scale, cloud.nearest, cloud.farthest})
-      all.put(double(x));
-    all.put(std::uint64_t(cloud.width)), all.put(std::uint64_t(cloud.height));
+      out.put(double(x));
+    out.put(std::uint64_t(cloud.width));
+    out.put(std::uint64_t(cloud.height));
   }
-  return io::digest_of(all.bytes());
+  return io::digest_of(out.bytes());
 }
 
 class mpi_ranks final : public all_ranks {
@@ -93,25 +98,28 @@ class mpi_ranks final : public all_ranks {
   bool speaks() const override { return rank_ == 0; }
 
   void agree_on(const asked_model& asked, const named_values& options) override {
-    parts_ = asked.bodies->size(), of_spheres_ = asked.model == model_kind::spheres;
+    parts_ = asked.bodies->size();
+    of_spheres_ = asked.model == model_kind::spheres;
     alike_.clear();
     for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
     alike_.push_back({"robot", digest_of(*asked.bodies)});
   }
   std::vector<cloud> share(const std::vector<cloud>& clouds) override {
-    share_.clear(), first_.clear();
+    share_.clear();
+    first_.clear();
     std::vector<std::pair<std::string, io::digest>> seen;
     for (const cloud& one : clouds)
       std::visit(
-          [&](const auto& its) {
-            seen.push_back({"cloud " + std::to_string(share_.size()), digest_of(its.source, its.pose)});
-            take_share(its.source, its.pose);
+          [&](const auto& placed_cloud) {
+            seen.push_back(
+                {"cloud " + std::to_string(share_.size()), digest_of(placed_cloud.source, placed_cloud.pose)});
+            take_share(placed_cloud.source, placed_cloud.pose);
           },
           one);
-    at_once([&](mpi::together& here) {
+    at_once([&](mpi::together& ranks_together) {
       auto anywhere = share_;  // poses are compared below, where an option's name is said
-      for (auto& its : anywhere) std::visit([](auto& mine) { mine.pose = Eigen::Isometry3d::Identity(); }, its);
-      here.agree(parts_, {}, anywhere);  // the first step of all, also of one that has failed
+      for (auto& one : anywhere) std::visit([](auto& mine) { mine.pose = Eigen::Isometry3d::Identity(); }, one);
+      ranks_together.agree(parts_, {}, anywhere);  // the first step of all, also of one that has failed
       compare(alike_);
       compare(seen);
     });
@@ -121,25 +129,25 @@ class mpi_ranks final : public all_ranks {
   /// This rank's answer about its share, joined with those of all others.
   template <class Joined, class Ask>
   auto joined(Joined answer, poses_of poses, const Ask& ask) -> decltype(answer.result()) {
-    return at_once([&](mpi::together& here) {
-      here.agree(parts_, poses, share_);
+    return at_once([&](mpi::together& ranks_together) {
+      ranks_together.agree(parts_, poses, share_);
       decltype(ask()) mine{};
-      here.attempt([&] { mine = ask(); });
-      here.join(answer, mine);
+      ranks_together.attempt([&] { mine = ask(); });
+      ranks_together.join(answer, mine);
       return answer.result();
     });
   }
   bool of_spheres() const { return of_spheres_; }
   /// The minima whose points are in this rank's share.
   std::vector<part_minimum> own(std::span<const part_minimum> minima) const {
-    std::vector<part_minimum> all(minima.begin(), minima.end());
-    for (part_minimum& its : all) {
-      if (its.cloud == none) continue;
-      const std::size_t count = std::visit([](const auto& mine) { return mine.source.size(); }, share_[its.cloud]);
-      its.point -= std::uint32_t(first_[its.cloud]);
-      if (its.point >= count) its = {};  // it is another rank's
+    std::vector<part_minimum> of_this_rank(minima.begin(), minima.end());
+    for (part_minimum& minimum : of_this_rank) {
+      if (minimum.cloud == none) continue;
+      const std::size_t count = std::visit([](const auto& mine) { return mine.source.size(); }, share_[minimum.cloud]);
+      minimum.point -= std::uint32_t(first_[minimum.cloud]);
+      if (minimum.point >= count) minimum = {};  // it is another rank's
     }
-    return all;
+    return of_this_rank;
   }
 
   void part() override {
@@ -148,19 +156,19 @@ class mpi_ranks final : public all_ranks {
   }
   /// Waits for all others, wherever they meet next. Throws an error of this rank or of another.
   void meet(std::exception_ptr failure) {
-    at_once([&](mpi::together& here) {
-      here.attempt([&] {
+    at_once([&](mpi::together& ranks_together) {
+      ranks_together.attempt([&] {
         if (failure) std::rethrow_exception(failure);
       });
-      here.agree(0, {}, std::vector<point_span>{});
+      ranks_together.agree(0, {}, std::vector<point_span>{});
     });
   }
   /// What all do together. If it throws, all ranks know.
   template <class Work>
   std::invoke_result_t<Work, mpi::together&> at_once(const Work& work) {
     try {
-      mpi::together here(MPI_COMM_WORLD);
-      return work(here);
+      mpi::together ranks_together(MPI_COMM_WORLD);
+      return work(ranks_together);
     } catch (...) {
       parted_ = true;
       throw;
@@ -175,7 +183,7 @@ class mpi_ranks final : public all_ranks {
   /// Throws on every rank if one has something else than rank 0. All have as many.
   void compare(const std::vector<std::pair<std::string, io::digest>>& alike) const {
     std::vector<io::digest> mine;
-    for (const auto& its : alike) mine.push_back(its.second);
+    for (const auto& value : alike) mine.push_back(value.second);
     const std::vector<io::digest> each = mpi::gather(MPI_COMM_WORLD, ranks_, mine.data(), mine.size());
     for (std::size_t i = 0; i < each.size(); ++i)
       if (const std::size_t k = i % mine.size(); each[i] != each[k])

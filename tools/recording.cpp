@@ -36,8 +36,10 @@ std::vector<std::string> words_of(std::string_view line) {
     if (const std::size_t first = line.find_first_not_of(" \t"); first != line.npos && line[first] == '"') {
       std::string word;
       std::size_t at = first + 1;
-      for (; at < line.size() && (line[at] != '"' || (at + 1 < line.size() && line[at + 1] == '"')); ++at)
-        word += line[at], at += line[at] == '"' ? 1 : 0;
+      for (; at < line.size() && (line[at] != '"' || (at + 1 < line.size() && line[at + 1] == '"')); ++at) {
+        word += line[at];
+        at += line[at] == '"' ? 1 : 0;
+      }
       comma = line.find(',', std::min(at, line.size()));
       const std::string_view after = line.substr(std::min(at + 1, line.size()));
       if (at < line.size() && trimmed(after.substr(0, after.find(','))).empty()) {
@@ -82,13 +84,16 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
     if (!values.emplace(name, 0).second) io::refuse(file, "has two columns for joint " + io::quoted(name), 1);
     names.push_back(name);
   }
+
   if (timed && !std::ranges::count(names, time_column))
     io::refuse(file, "has no column named time, which --stamps needs: when the joints were so, in seconds", 1);
+
   try {
     tree.configuration(values, {.ignore_limits = true});  // throws for an unknown name
   } catch (const std::invalid_argument& error) {
     io::refuse(file, error.what(), 1);
   }
+
   for (std::size_t i = 0; i < tree.size(); ++i)
     if (const std::string& name = tree.movable(i).name; !values.contains(name))
       io::refuse(file, "has no column for joint " + io::quoted(name) + " (--joint " + name + "=value fixes it)", 1);
@@ -98,13 +103,13 @@ std::vector<std::string> columns(const std::string& file, std::string_view line,
 /// Refuses what is named like a frame and is no file; leaving it out would renumber those after it.
 void check_frame(const std::string& file) {
   std::error_code failed;
-  const fs::file_status there = fs::status(file, failed);
-  if (fs::is_regular_file(there)) return;
+  const fs::file_status status = fs::status(file, failed);
+  if (fs::is_regular_file(status)) return;
   const bool linked = fs::is_symlink(fs::symlink_status(file, failed));
-  const char* const what = fs::is_directory(there)        ? "is a folder"
-                           : !fs::exists(there) && linked ? "is a link to what is not there"
-                           : fs::exists(there)            ? "is no regular file"
-                                                          : "cannot be read";
+  const char* const what = fs::is_directory(status)        ? "is a folder"
+                           : !fs::exists(status) && linked ? "is a link to what is not there"
+                           : fs::exists(status)            ? "is no regular file"
+                                                           : "cannot be read";
   io::refuse(file, std::string(what) + ", but is named like a frame of the recording");
 }
 
@@ -122,7 +127,8 @@ bool comes_before(const std::string& a, const std::string& b) {
   while (i < a.size() && j < b.size()) {
     if (!is_digit(a[i]) || !is_digit(b[j])) {
       if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
-      ++i, ++j;
+      ++i;
+      ++j;
       continue;
     }
     const auto take = [](const std::string& text, std::size_t& at) {
@@ -153,15 +159,17 @@ std::vector<std::string> list_frames(const std::string& where, std::vector<std::
         others.push_back(name);
       }
     }
-    std::ranges::sort(files, comes_before), std::ranges::sort(others, comes_before);
-    const std::size_t all = files.size() + others.size();
+    std::ranges::sort(files, comes_before);
+    std::ranges::sort(others, comes_before);
+    const std::size_t listed = files.size() + others.size();
     if (files.empty()) io::refuse(where, "has no frame: no file .pcd, .ply, .xyz, .txt or .png");
     if (!others.empty())
-      notes.push_back(where + ": " + std::to_string(others.size()) + " of its " + std::to_string(all) +
+      notes.push_back(where + ": " + std::to_string(others.size()) + " of its " + std::to_string(listed) +
                       " files are not named like frames (.pcd, .ply, .xyz, .txt, .png) and are left out, " +
                       io::quoted(others[0]) + (others.size() > 1 ? " first" : ""));
     return files;
   }
+
   if (is_frame(where)) return {where};
   const std::string bytes = io::as_utf8(io::read_bytes(where), where);
   for (std::string_view rest = io::without_mark(bytes); !rest.empty();)
@@ -196,6 +204,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
                                               " has no value (--joint name=value fixes it)");
     return {tree.configuration(fixed, limits)};
   }
+
   const std::string bytes = io::as_utf8(io::read_bytes(file), file);
   std::string_view rest = io::without_mark(bytes);
   const std::vector<std::string> names = columns(file, io::take_line(rest), tree, fixed, times != nullptr);
@@ -205,6 +214,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
     if (!rest.empty()) io::refuse(file, "has values, but no names of joints", 2);
     return {tree.configuration(fixed, limits)};
   }
+
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const std::string text(io::take_line(rest));
     const std::string where = file + ':' + std::to_string(line);
@@ -240,6 +250,7 @@ std::vector<stamped_row> read_stamped_rows(const query_options& asked, const io:
     } catch (const std::invalid_argument& error) {
       io::refuse(from.trajectory, error.what(), k + 2);
     }
+
   const std::string bytes = io::as_utf8(io::read_bytes(from.stamps), from.stamps);
   std::string_view rest = io::without_mark(bytes);
   rest = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);  // without blank lines at the end
@@ -270,13 +281,13 @@ placed_rows::placed_rows(const query_options& asked, const asked_robot& robot,
 }
 
 std::vector<Eigen::Isometry3d> placed_rows::placed(std::size_t begin) const {
-  std::vector<Eigen::Isometry3d> all;
+  std::vector<Eigen::Isometry3d> poses_of_rows;
   for (std::size_t k = begin; k < std::min(rows_.size(), begin + rows_each_); ++k) {
     const auto poses = placed_links(asked_, robot_, rows_[k], " in row " + std::to_string(k) + " of " + file_);
-    if (k == begin) all.reserve(poses.size() * std::min(rows_.size() - begin, rows_each_));
-    all.insert(all.end(), poses.begin(), poses.end());
+    if (k == begin) poses_of_rows.reserve(poses.size() * std::min(rows_.size() - begin, rows_each_));
+    poses_of_rows.insert(poses_of_rows.end(), poses.begin(), poses.end());
   }
-  return all;
+  return poses_of_rows;
 }
 
 void note_fields(const backend_robot& there, const std::vector<body>& bodies, std::vector<std::string>& notes) {
@@ -286,22 +297,22 @@ void note_fields(const backend_robot& there, const std::vector<body>& bodies, st
 }
 
 min_distances_result ask_plan(backend_robot& there, const placed_rows& rows, double d_max, double& query) {
-  min_distances_result all;
+  min_distances_result joined;
   rows.for_each_block([&](poses_of poses) {
     const min_distances_result some = there.plan(poses, d_max);
-    all.of.insert(all.of.end(), some.of.begin(), some.of.end());
+    joined.of.insert(joined.of.end(), some.of.begin(), some.of.end());
     query += there.query;
   });
-  return all;
+  return joined;
 }
 
 std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_rows& rows, double d_max,
                                           const std::vector<double>& radii, double& query) {
-  std::vector<certain_row> all;
+  std::vector<certain_row> made;
   rows.for_each_block([&](poses_of poses) {
     const min_distances_per_part_result some = there.certain_plan(poses, d_max, radii);
     for (std::size_t c = 0; c < some.size(); ++c) {
-      certain_row& row = all.emplace_back();
+      certain_row& row = made.emplace_back();
       row.anywhere = some.of(c)[0].dropped[int(drop_reason::too_close)];
       if (row.anywhere != 0) row.state = state::possible;  // if no other point is left, too
       for (std::uint32_t k = 0; k < some.parts; ++k) {
@@ -312,20 +323,20 @@ std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_row
     }
     query += there.query;
   });
-  return all;
+  return made;
 }
 
 std::vector<unseen_result> ask_plan_unseen(backend_robot& there, const placed_rows& rows, const clearance::unseen& q,
                                            std::size_t links, bool until_end, double& query) {
-  std::vector<unseen_result> all;
+  std::vector<unseen_result> made;
   rows.for_each_block([&](poses_of poses) {
     for (std::size_t first = 0; first < poses.size(); first += links) {
-      all.push_back(there.unseen(poses.subspan(first, links), q, until_end));
-      all.back().parts = {};  // a plan may have many rows
+      made.push_back(there.unseen(poses.subspan(first, links), q, until_end));
+      made.back().parts = {};  // a plan may have many rows
       query += there.query;
     }
   });
-  return all;
+  return made;
 }
 
 void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
@@ -352,8 +363,8 @@ void merged_cloud::add(observation frame, const Eigen::Isometry3d& carrier) {
 }
 
 seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
-  const std::size_t all = points_.size();
-  cloud_ = io::make_cloud("merged", std::move(points_), all, 1).near(robot);
+  const std::size_t count = points_.size();
+  cloud_ = io::make_cloud("merged", std::move(points_), count, 1).near(robot);
   // A point's distance from its sensor is at most the way by the origin, and the sensor's pose has moved it in double.
   position_error worst;
   for (const sensor& s : sensors_) {
@@ -361,7 +372,8 @@ seen_points merged_cloud::finish(const std::vector<Eigen::Isometry3d>& robot) {
     worst.relative = std::max(worst.relative, off);
     worst.absolute = std::max(worst.absolute, off * (s.at - cloud_.origin).norm() + frames::pose_error * s.at.norm());
   }
-  cloud_.off.relative += worst.relative, cloud_.off.absolute += worst.absolute;
+  cloud_.off.relative += worst.relative;
+  cloud_.off.absolute += worst.absolute;
   const auto [source, pose] = cloud_.view();
   return {source, pose};
 }

@@ -25,7 +25,7 @@ std::vector<std::vector<double>> read_trajectory(const std::string& file, const 
                                                  clearance::io::joint_options limits,
                                                  std::vector<double>* times = nullptr);
 
-/// The same for the given options, including --joint.
+/// `read_trajectory` for the given options, including --joint.
 std::vector<std::vector<double>> read_rows(const query_options& asked, const clearance::io::robot& robot,
                                            const std::string& file);
 
@@ -77,7 +77,7 @@ struct certain_row {
   std::uint32_t part = clearance::none, cloud = clearance::none, point = clearance::none;
   std::uint64_t anywhere = 0;  // points that may be anywhere
 };
-/// Of all rows, about all places where points and parts may be.
+/// What is certain of all rows, about all places where points and parts may be.
 std::vector<certain_row> ask_certain_plan(backend_robot& there, const placed_rows& rows, double d_max,
                                           const std::vector<double>& radii, double& query);
 /// How far each row, of so many links, is from what the clouds hide (`until_end`: or may hide until the plan ends);

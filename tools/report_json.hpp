@@ -23,7 +23,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& 
 json witness(const clearance::min_distance_result& r, const observation* cloud, std::uint32_t point,
              const std::vector<body>& bodies);
 
-/// x,y,z,qx,qy,qz,qw.
+/// A pose as x,y,z,qx,qy,qz,qw.
 json pose_of(const Eigen::Isometry3d& pose);
 
 /// A file of --cloud, and where it is placed: `pose` is that of --camera-pose, in the world or in `link`.

@@ -25,11 +25,13 @@ inline std::string with_short_numbers(const std::string& line, bool no_signs) {
       out += line[at++];
       continue;
     }
+
     const std::size_t whole = end;
     while (digit(end)) ++end;
     const std::size_t point = end;
     if (end < line.size() && line[end] == '.' && digit(end + 1))
       for (++end; digit(end);) ++end;
+
     std::string number = line.substr(at, end - at);
     if (const bool complete = !of_word(end) || (line[end] == '.' && !of_word(end + 1)); complete) {
       if (number.find_first_not_of("-0.") == number.npos && no_signs && point < end) number.erase(0, negative);
@@ -39,7 +41,8 @@ inline std::string with_short_numbers(const std::string& line, bool no_signs) {
         number = shorter;
       }
     }
-    out += number, at = end;
+    out += number;
+    at = end;
   }
   return out;
 }

@@ -26,8 +26,8 @@ namespace {
 
 /// Records a file that will be read, and so must not be written.
 void note_file(const std::string& file) {
-  struct ::stat there{};
-  if (::stat(file.c_str(), &there) == 0) io::files_read::note({there.st_dev, there.st_ino});
+  struct ::stat present{};
+  if (::stat(file.c_str(), &present) == 0) io::files_read::note({present.st_dev, present.st_ino});
 }
 
 void print(const std::vector<std::string>& notes, progress& shown) {
@@ -61,9 +61,9 @@ class motion {
     if (!stamped_.empty()) return stamped_[frame].joints.values;
     return rows_.size() == 1 ? rows_[0] : rows_[frame];
   }
-  /// For --stamps.
+  /// The row that --stamps gives a frame; or null.
   const stamped_row* stamped(std::size_t frame) const { return stamped_.empty() ? nullptr : &stamped_[frame]; }
-  /// So many seconds are between the joints and the frame.
+  /// Seconds between the joints and the frame.
   double off(std::size_t frame) const { return stamped_.empty() ? 0 : stamped_[frame].joints.off; }
 
   /// One radius per part, by what is uncertain about the joints.
@@ -175,7 +175,8 @@ class waypoints {
 /// What is certain, as the picture draws it.
 min_distance_result bracket_of(const certain_distance_result& certain) {
   min_distance_result r = certain.nominal;
-  r.lower = certain.lower, r.upper = certain.upper;
+  r.lower = certain.lower;
+  r.upper = certain.upper;
   return r;
 }
 
@@ -208,10 +209,11 @@ int run_frames(const query_options& asked) {
   const field_use fields = uses_fields(asked, to_come.size() * frames.size());
   const std::vector<body> bodies = make_bodies(asked, robot, shown, notes, fields);
   print(notes, shown);
-  const auto there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, fields,
-                                                chosen_cache(asked.no_cache, asked.cache).folder()});
+  const auto robot_there = robot_on(asked.on_device, {asked.model, asked.volume, &bodies, fields,
+                                                      chosen_cache(asked.no_cache, asked.cache).folder()});
+
   int code = 0;
-  double upload = asked.recording.merge ? there->see({merged.finish(moves.poses(0))}) : 0;
+  double upload = asked.recording.merge ? robot_there->see({merged.finish(moves.poses(0))}) : 0;
   asked_clouds clouds;  // the frame's
   svg_frames drawn;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -222,37 +224,43 @@ int run_frames(const query_options& asked) {
       clouds = {};
       clouds.files.push_back(std::move(next));
       clouds.place(asked, robot, moves.row(k), poses, moves.off(k));
-      upload = there->see(clouds.seen);
+      upload = robot_there->see(clouds.seen);
       frame = &clouds.files[0];
     }
+
     std::optional<own_points> own;
     if (asked.self_filter) {
-      own = hide_own_points(asked, *there, poses, clouds, moves.summed(k, there->facts()));
+      own = hide_own_points(asked, *robot_there, poses, clouds, moves.summed(k, robot_there->facts()));
       upload += own->upload;
     }
+
     frame_report report{
         .asked = &asked, .frame = k, .file = frames[k], .stamped = moves.stamped(k), .found = {}, .bodies = &bodies};
-    report.found = report.each_part() ? there->least_per_part(poses, 1) : there->least(poses);
+    report.found = report.each_part() ? robot_there->least_per_part(poses, 1) : robot_there->least(poses);
     report.upload = std::exchange(upload, 0);
-    report.query = there->query;
+    report.query = robot_there->query;
     if (own) report.filter = &own->filter;
-    if (asked.certain) report.certain = there->certain(poses, moves.radii(k, there->facts()));
+    if (asked.certain) report.certain = robot_there->certain(poses, moves.radii(k, robot_there->facts()));
+
     std::optional<unseen_result> unseen;
     if (asked.unseen) {
       unseen = own ? std::move(own->unseen)
-                   : there->unseen(poses, {.room = *asked.unseen, .radii = moves.summed(k, there->facts())}, false);
-      report.unseen_query = own ? own->unseen_query : there->query;
+                   : robot_there->unseen(poses, {.room = *asked.unseen, .radii = moves.summed(k, robot_there->facts())},
+                                         false);
+      report.unseen_query = own ? own->unseen_query : robot_there->query;
       report.unseen = {
           .asked = &asked, .found = &*unseen, .clouds = {frame}, .bodies = &bodies, .filtered = own.has_value()};
     }
-    const std::optional<plan_report> plan = to_come.ask(*there, clouds.files, bodies);
+
+    const std::optional<plan_report> plan = to_come.ask(*robot_there, clouds.files, bodies);
     if (plan) report.plan = &*plan;
     if (k == 0) {
       notes.clear();
       if (frame) note_scale(clouds.seen, bodies, poses, report.found.result, notes);
-      note_fields(*there, bodies, notes);
+      note_fields(*robot_there, bodies, notes);
       print(notes, shown);
     }
+
     min_distance_result& r = report.found.result;
     if (r.state != state::no_data)
       std::tie(report.cloud, report.point) =
@@ -268,6 +276,7 @@ int run_frames(const query_options& asked) {
     }
     code = std::max(code, exit_code(report, asked.margin));
   }
+
   if (!asked.recording.svg.empty()) {
     io::check_output(asked.recording.svg, inputs);
     io::write_bytes(asked.recording.svg, clearance_svg(drawn, asked.recording.frames, asked.margin));

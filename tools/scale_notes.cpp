@@ -14,7 +14,10 @@ struct extent_of_all {
   Eigen::AlignedBox3d box;
   std::size_t points = 0;
 
-  void add(const Eigen::Vector3d& p) { box.extend(p), ++points; }
+  void add(const Eigen::Vector3d& p) {
+    box.extend(p);
+    ++points;
+  }
   double size() const { return points == 0 ? 0 : box.diagonal().norm(); }
 };
 
@@ -29,6 +32,7 @@ void note_scale(const std::vector<seen_points>& clouds, const std::vector<body>&
     for (const inner_sphere& s : bodies[k].packed.spheres)
       robot.add(poses[k] * Eigen::Vector3d(s.center.x, s.center.y, s.center.z));
   }
+
   const double size = robot.size();
   bool images = true;
   for (const seen_points& cloud : clouds)
@@ -40,6 +44,7 @@ void note_scale(const std::vector<seen_points>& clouds, const std::vector<body>&
               seen.add(cloud.pose * Eigen::Vector3d(s.position.x, s.position.y, s.position.z));
         },
         cloud.points);
+
   const char* const option = images ? "--depth-scale" : "--cloud-scale";
   if (nearest.distance > 50)
     notes.push_back(

@@ -48,13 +48,13 @@ json unseen_of(const unseen_report& report) {
 
 json unseen_of(const unseen_report& report, std::size_t part) {
   if (report.found->parts.empty()) return nullptr;
-  const unseen_part& its = report.found->parts[part];
-  const observation* cloud = report.cloud(its.cloud);
-  return {{"distance", or_null(its.distance)},
-          {"lower", or_null(its.lower)},
+  const unseen_part& found = report.found->parts[part];
+  const observation* cloud = report.cloud(found.cloud);
+  return {{"distance", or_null(found.distance)},
+          {"lower", or_null(found.lower)},
           {"cloud", cloud ? json(cloud->name) : json(nullptr)},
-          {"pixel", pixel_of(cloud, its.point)},
-          {"out_of_view", or_null(its.out_of_view)}};
+          {"pixel", pixel_of(cloud, found.point)},
+          {"out_of_view", or_null(found.out_of_view)}};
 }
 
 std::string unseen_text(const unseen_report& report) {
@@ -84,11 +84,11 @@ std::string unseen_text(const unseen_report& report) {
 std::string unseen_parts_text(const unseen_report& report) {
   std::string out = "\nunseen (how far from each link, at least how far, and how much of it no camera shows)\n";
   for (std::size_t k = 0; k < report.found->parts.size(); ++k) {
-    const unseen_part& its = report.found->parts[k];
+    const unseen_part& found = report.found->parts[k];
     out += name_column((*report.bodies)[k].name);
-    out += its.part == none ? "         -" : text("%10.6f m, %10.6f m", double(its.distance), double(its.lower));
-    out += std::isnan(its.out_of_view) ? "" : text(", %3.0f %%", 100 * double(its.out_of_view));
-    out += its.part == none ? "\n" : ", " + pixel_text(report, its.cloud, its.point) + '\n';
+    out += found.part == none ? "         -" : text("%10.6f m, %10.6f m", double(found.distance), double(found.lower));
+    out += std::isnan(found.out_of_view) ? "" : text(", %3.0f %%", 100 * double(found.out_of_view));
+    out += found.part == none ? "\n" : ", " + pixel_text(report, found.cloud, found.point) + '\n';
   }
   return out;
 }

@@ -15,16 +15,16 @@ struct unseen_report {
   const std::vector<body>* bodies = nullptr;
   bool filtered = false;  // by --self-filter: then there is an own shadow to tell of
 
-  /// For --check.
+  /// Does --check pass?
   bool passes() const { return found->all.state != clearance::state::no_data && found->all.lower > *asked->margin; }
   const observation* cloud(std::uint32_t number) const { return number == clearance::none ? nullptr : clouds[number]; }
 };
 
-/// About the robot, and about one part.
+/// The answer about the robot, and about one part.
 json unseen_of(const unseen_report& report);
 json unseen_of(const unseen_report& report, std::size_t part);
 
-/// The same as text: a line or two, and a table of parts.
+/// The answer as text: a line or two, and a table of parts.
 std::string unseen_text(const unseen_report& report);
 std::string unseen_parts_text(const unseen_report& report);
 

@@ -30,7 +30,10 @@ struct compact_body {
     std::uint32_t n = 0;
     const std::size_t size = source.size();
     for (std::size_t i = 0; i < size; ++i)
-      if (const sample s = source[i]; s.valid()) points[n] = s.position, numbers[n++] = std::uint32_t(i);
+      if (const sample s = source[i]; s.valid()) {
+        points[n] = s.position;
+        numbers[n++] = std::uint32_t(i);
+      }
     *count = n;
   }
 };

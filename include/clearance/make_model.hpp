@@ -23,7 +23,8 @@ namespace detail {
 
 /// A sum of tolerances hides a negative one.
 inline double tolerance_with(const part_options& options, double of_body) {
-  check_length(options.tolerance, "the tolerance of a part"), check_length(of_body, "the tolerance of a body");
+  check_length(options.tolerance, "the tolerance of a part");
+  check_length(of_body, "the tolerance of a body");
   return options.tolerance + of_body;
 }
 
@@ -52,10 +53,14 @@ auto make_part(const closed_mesh& mesh, const part_options& options = {}, Fit fi
   auto surface = make_part(build<V>(triangles, options.build, fit), certain ? 0 : infinity,
                            detail::tolerance_with(options, mesh.tolerance));
   winding<> interior;
-  if (mesh.closed)
+  if (mesh.closed) {
     interior = make_winding(mesh);
-  else
-    for (int k = 0; k < 3; ++k) interior.grid.low[k] = infinity, interior.grid.high[k] = -infinity;
+  } else {
+    for (int k = 0; k < 3; ++k) {
+      interior.grid.low[k] = infinity;
+      interior.grid.high[k] = -infinity;
+    }
+  }
   return part<bvh<V, triangle>, winding<>>{std::move(surface.tree), std::move(interior), surface.facts};
 }
 

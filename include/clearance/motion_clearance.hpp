@@ -64,7 +64,10 @@ inline motion_piece piece_around(const asked_time& a, std::size_t number, double
   motion_piece piece{infinity, none, a.time, half, number};
   for (std::uint32_t k = 0; k < a.lower.size(); ++k) {
     const double its = a.lower[k] * (1 - 0x1p-50) - a.travels[k].within(half + time_error);
-    if (piece.part == none || its < piece.lower) piece.lower = its, piece.part = k;
+    if (piece.part == none || its < piece.lower) {
+      piece.lower = its;
+      piece.part = k;
+    }
   }
   piece.lower = piece.lower > 0 ? piece.lower : 0;
   return piece;
@@ -96,7 +99,8 @@ inline void check(const moment& m, std::size_t parts) {
 template <class Ask, motion Motion, class Clouds>
 motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> facts, const Motion& motion,
                                     const Clouds& clouds, const motion_clearance_options& options) {
-  check(options), check_radii(options.radii, facts.size());
+  check(options);
+  check_radii(options.radii, facts.size());
   const bool vague = any_vague(clouds);
   motion_clearance_result all;
   std::vector<asked_time> asked;
@@ -109,8 +113,11 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     const min_distance_result& r = found.all;
     const double radius = r.part == none ? 0 : radius_of(options.radii, r.part);
     const real upper = radius == 0 ? r.upper : rounded_up(double(r.upper) + radius);
-    if (++all.queries == 1 || upper < all.upper || (upper == all.upper && time < all.time))
-      all.upper = upper, all.time = time, all.nearest = r;
+    if (++all.queries == 1 || upper < all.upper || (upper == all.upper && time < all.time)) {
+      all.upper = upper;
+      all.time = time;
+      all.nearest = r;
+    }
     if (r.part == none) return false;
     const frames::float_error error = ahead.facts_of(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
@@ -126,21 +133,29 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
   std::priority_queue<motion_piece> pieces;
   if (!ask_at(0.5)) return all;
   for (motion_piece worst = piece_around(asked[0], 0, 0.5);; worst = pieces.top(), pieces.pop()) {
-    all.lower = rounded_down(worst.lower), all.part = worst.part;
-    all.from = std::max(0.0, worst.time - worst.half), all.to = std::min(1.0, worst.time + worst.half);
+    all.lower = rounded_down(worst.lower);
+    all.part = worst.part;
+    all.from = std::max(0.0, worst.time - worst.half);
+    all.to = std::min(1.0, worst.time + worst.half);
     const bool decided = all.lower > options.margin || !(certain > options.margin);
     all.settled = certain - worst.lower <= options.tolerance && (options.tolerance < infinity || decided);
     if (all.settled || all.queries + 2 > options.most_queries) break;
     const double third = worst.half / 3;
     const auto put = [&](std::size_t number) {
       motion_piece piece = piece_around(asked[number], number, third);
-      if (piece.lower < worst.lower)
-        piece.lower = worst.lower, piece.part = worst.part;  // what is known of the whole is so of a piece
+      if (piece.lower < worst.lower) {  // what is known of the whole holds for a piece
+        piece.lower = worst.lower;
+        piece.part = worst.part;
+      }
       pieces.push(piece);
     };
     put(worst.asked);  // a third of it has the same middle, so that two questions make three pieces
     for (const double time : {worst.time - 2 * third, worst.time + 2 * third}) {
-      if (!ask_at(time)) return all.lower = 0, all.state = state::no_data, all;
+      if (!ask_at(time)) {
+        all.lower = 0;
+        all.state = state::no_data;
+        return all;
+      }
       put(asked.size() - 1);
     }
   }

@@ -45,7 +45,8 @@ struct point_counts {
 
   /// Adds those of other points.
   CLEARANCE_HD void add(const point_counts& other) {
-    seen += other.seen, valid += other.valid;
+    seen += other.seen;
+    valid += other.valid;
     for (int k = 0; k < drop_reasons; ++k) dropped[k] += other.dropped[k];
   }
 };

@@ -55,7 +55,10 @@ class seen_and_unseen::engine {
     return result_;
   }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() { seen_.forget(), unseen_.forget(); }
+  void forget() {
+    seen_.forget();
+    unseen_.forget();
+  }
 
  private:
   template <class Clouds, class Shown>

@@ -245,18 +245,18 @@ class Hiding:
 
     def __init__(self, nearest: float = 0.10000000149011612, farthest: float = 10.0, infinite_is_free: bool = False) -> None:
         """
-        nearest: From here on a pixel without a return hides everything,
-        farthest: up to here. What is farther does not matter.
+        nearest: From this depth on a pixel without a return hides everything.
+        farthest: Up to this depth pixels hide. What is farther does not matter.
         infinite_is_free: A pixel of +inf says that nothing is there (REP 117); otherwise it is no return.
         """
 
     @property
     def nearest(self) -> float:
-        """From here on a pixel without a return hides everything,"""
+        """From this depth on a pixel without a return hides everything."""
 
     @property
     def farthest(self) -> float:
-        """up to here. What is farther does not matter."""
+        """Up to this depth pixels hide. What is farther does not matter."""
 
     @property
     def infinite_is_free(self) -> bool:
@@ -289,11 +289,11 @@ class KinectNoise:
     """
 
     def __init__(self, k: float = 3.0) -> None:
-        """k: So many standard deviations."""
+        """k: How many standard deviations a point may be off."""
 
     @property
     def k(self) -> float:
-        """So many standard deviations."""
+        """How many standard deviations a point may be off."""
 
     def __repr__(self) -> str: ...
 
@@ -310,27 +310,27 @@ class StereoNoise:
 
     def __init__(self, focal_length: float = 0.0, baseline: float = 0.0, disparity: float = 0.0, k: float = 3.0) -> None:
         """
-        focal_length: f, in pixels.
-        baseline: B, in metres.
-        disparity: s, the standard deviation of a disparity, in pixels.
-        k: So many standard deviations.
+        focal_length: The focal length f, in pixels.
+        baseline: The distance B between the cameras, in metres.
+        disparity: The standard deviation s of a disparity, in pixels.
+        k: How many standard deviations a point may be off.
         """
 
     @property
     def focal_length(self) -> float:
-        """f, in pixels."""
+        """The focal length f, in pixels."""
 
     @property
     def baseline(self) -> float:
-        """B, in metres."""
+        """The distance B between the cameras, in metres."""
 
     @property
     def disparity(self) -> float:
-        """s, the standard deviation of a disparity, in pixels."""
+        """The standard deviation s of a disparity, in pixels."""
 
     @property
     def k(self) -> float:
-        """So many standard deviations."""
+        """How many standard deviations a point may be off."""
 
     def __repr__(self) -> str: ...
 
@@ -347,22 +347,22 @@ class TofNoise:
 
     def __init__(self, constant: float = 0.0, square: float = 0.0, k: float = 3.0) -> None:
         """
-        constant: Metres.
-        square: Metres for each square metre.
-        k: So many standard deviations.
+        constant: The standard deviation at distance 0, in metres.
+        square: What the deviation grows by for each square metre of squared distance, in metres.
+        k: How many standard deviations a point may be off.
         """
 
     @property
     def constant(self) -> float:
-        """Metres."""
+        """The standard deviation at distance 0, in metres."""
 
     @property
     def square(self) -> float:
-        """Metres for each square metre."""
+        """What the deviation grows by for each square metre of squared distance, in metres."""
 
     @property
     def k(self) -> float:
-        """So many standard deviations."""
+        """How many standard deviations a point may be off."""
 
     def __repr__(self) -> str: ...
 
@@ -379,22 +379,22 @@ class LidarNoise:
 
     def __init__(self, constant: float = 0.0, share: float = 0.0, k: float = 3.0) -> None:
         """
-        constant: Metres.
-        share: Metres for each metre.
-        k: So many standard deviations.
+        constant: The standard deviation at distance 0, in metres.
+        share: What the deviation grows by for each metre of distance, in metres.
+        k: How many standard deviations a point may be off.
         """
 
     @property
     def constant(self) -> float:
-        """Metres."""
+        """The standard deviation at distance 0, in metres."""
 
     @property
     def share(self) -> float:
-        """Metres for each metre."""
+        """What the deviation grows by for each metre of distance, in metres."""
 
     @property
     def k(self) -> float:
-        """So many standard deviations."""
+        """How many standard deviations a point may be off."""
 
     def __repr__(self) -> str: ...
 

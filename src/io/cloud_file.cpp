@@ -80,11 +80,13 @@ cloud load_xyz(const std::string& file, const read_limits& limits) {
   std::string_view rest = without_mark(bytes);
   std::vector<Eigen::Vector3d> points;
   std::size_t usual = 0;  // words per line
+
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);
     line = without_comment(line, " \t\r\v\f,;");
     if (line.starts_with("//") || line.find_first_not_of(" \t\r\v\f,;") == line.npos) continue;
     check_xyz_commas(line, file, at);
+
     Eigen::Vector3d p;
     for (int axis = 0; axis < 3; ++axis) {
       const auto word = take_field(line);
@@ -94,6 +96,7 @@ cloud load_xyz(const std::string& file, const read_limits& limits) {
       if (!value) refuse(file, quoted(*word) + " is not a number", at);
       p[axis] = *value;
     }
+
     std::size_t count = 3;
     while (take_field(line)) ++count;
     if (points.empty()) usual = count;

@@ -26,9 +26,13 @@ class rvl_reader {
   std::uint32_t next() {
     std::uint32_t value = 0;
     for (int shift = 0;; shift += 3) {
-      if (left_ == 0) word_ = from_.take<std::uint32_t>(), left_ = 8;
+      if (left_ == 0) {
+        word_ = from_.take<std::uint32_t>();
+        left_ = 8;
+      }
       const std::uint32_t nibble = word_ >> 28;
-      word_ <<= 4, --left_;
+      word_ <<= 4;
+      --left_;
       if (shift > 27) refuse(*file_, "the RVL image is damaged (a number is too long)");
       value |= (nibble & 7u) << shift;
       if ((nibble & 8u) == 0) return value;
@@ -50,6 +54,7 @@ depth_frame read_rvl(std::string_view bytes, std::size_t width, std::size_t heig
   if (width > limits.unfolded / 2 / height)
     refuse(file, "the RVL image says " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels, more than the limit of " + mebibytes(limits.unfolded) + " (read_limits::unfolded)");
+
   depth_frame made{file, {}, width, height};
   std::vector<std::uint16_t>& pixels = made.pixels;
   const std::size_t count = width * height;
@@ -60,6 +65,7 @@ depth_frame read_rvl(std::string_view bytes, std::size_t width, std::size_t heig
       refuse(file, "the RVL image is damaged (it has more pixels than its size says)");
     return length;
   };
+
   std::uint32_t last = 0;
   for (bool zeros = true; pixels.size() < count; zeros = !zeros) {
     const std::uint32_t length = run();
@@ -95,7 +101,12 @@ compressed_depth read_compressed_depth(std::string_view format, std::string_view
   if (!known) refuse(file, "the image's format is " + io::quoted(format) + ", which is no depth");
   byte_reader from(bytes, file);
   float a = 0, b = 0;
-  if (known->headed) from.take<std::uint32_t>(), a = from.take<float>(), b = from.take<float>();
+  if (known->headed) {
+    from.take<std::uint32_t>();
+    a = from.take<float>();
+    b = from.take<float>();
+  }
+
   compressed_depth made;
   if (known->rvl) {
     const auto width = from.take<std::uint32_t>(), height = from.take<std::uint32_t>();
@@ -107,6 +118,7 @@ compressed_depth read_compressed_depth(std::string_view format, std::string_view
   if (!(a > 0) || !std::isfinite(a) || !std::isfinite(b))
     refuse(file, "the image has inverse depths, and parameters that no depth follows from (" + std::to_string(a) +
                      " and " + std::to_string(b) + ")");
+
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   for (const std::uint16_t n : made.frame.pixels) {
     const float depth = a / (float(n) - b);

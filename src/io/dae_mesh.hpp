@@ -95,6 +95,7 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
   const auto access = source.in(*accessor);
   access.only({"source", "count", "offset", "stride"}, {"param"});
   const auto array = mesh.in(dae_ids(dae_children(source.element, "float_array")).find(access, "source"));
+
   const std::uint64_t size = dae_count(array, "count");
   std::uint64_t count = dae_count(access, "count");
   const std::uint64_t offset = dae_count(access, "offset", 0), stride = dae_count(access, "stride", 1);
@@ -102,12 +103,14 @@ inline std::vector<Eigen::Vector3d> dae_positions(const xml_place& mesh, const x
     if (accessor->children.size() < 3 || stride < 3 ||
         access.in(accessor->children[i]).attribute("name") != std::string(1, "XYZ"[i]))
       access.refuse("of positions has no params X, Y and Z");
+
   const auto values = dae_numbers<double>(array, &size);
   if (count == size && size > 3 && offset == 0 && size % stride == 0) {
     count = size / stride;
     note_once(notes, "has an <accessor> that counts floats and not positions, which is taken so");
   }
   if (count > 0 && offset + (count - 1) * stride + 3 > size) access.refuse("needs more values than its array has");
+
   std::vector<Eigen::Vector3d> made(count);
   for (std::uint64_t i = 0; i < count; ++i)
     for (int k = 0; k < 3; ++k) {
@@ -191,6 +194,7 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
   const bool one = kind == "triangles" || kind == "polylist";
   if (lists.size() != (one ? 1 : count) && !(one && lists.empty() && count == 0))
     list.refuse("has the count " + std::to_string(count) + " and " + std::to_string(lists.size()) + " lists <p>");
+
   std::vector<std::uint64_t> sizes;  // corners of each face
   if (const xml_element* counts = list.child("vcount"); kind == "polylist") {
     if (!counts && count > 0) list.refuse("has no <vcount>");
@@ -198,6 +202,7 @@ inline void dae_faces(const xml_place& list, const std::string& vertices, polygo
   } else if (counts) {
     list.in(*counts).refuse("is not known in <" + kind + ">");
   }
+
   for (const xml_element* each : lists) {
     const auto at = list.in(*each);
     const auto corners = dae_corners(at, layout, mesh.vertices.size());

@@ -36,7 +36,10 @@ digest digest_of(const closed_mesh& mesh) {
   out.put(std::uint8_t(mesh.closed));
   if (!mesh.enclosed.bits.empty()) {
     const enclosure_grid& grid = mesh.enclosed;
-    for (int k = 0; k < 3; ++k) out.put(grid.low[k]), out.put(grid.size[k]);
+    for (int k = 0; k < 3; ++k) {
+      out.put(grid.low[k]);
+      out.put(grid.size[k]);
+    }
     out.put(grid.cube);
     for (const std::uint32_t word : grid.bits) out.put(word);
   }

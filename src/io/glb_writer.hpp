@@ -107,6 +107,7 @@ class glb_writer {
            const std::string& group) {
     if (!pose.matrix().allFinite()) refuse(file_, "the pose of a part of the scene is not finite");
     check(mesh);
+
     json primitive = {{"material", materials_.size()}, {"attributes", {{"POSITION", positions(mesh.positions)}}}};
     if (mesh.corners.empty()) {
       primitive["mode"] = 0;  // points; each vertex carries its colour, because viewers look for it there
@@ -120,6 +121,7 @@ class glb_writer {
       primitive["attributes"]["NORMAL"] = accessor(flat(mesh.normals), 3, "VEC3", vertex_data);
       primitive["indices"] = accessor(mesh.corners, 1, "SCALAR", index_data);
     }
+
     json material = {{"name", name},
                      {"doubleSided", true},
                      {"pbrMetallicRoughness",
@@ -131,6 +133,7 @@ class glb_writer {
     json node = {{"name", name}, {"mesh", meshes_.size()}};
     for (int i = 0; i < 16; ++i) node["matrix"].push_back(pose.matrix()(i % 4, i / 4));
     meshes_.push_back({{"name", name}, {"primitives", json::array({std::move(primitive)})}});
+
     json* above = &top_;
     if (!group.empty()) {
       auto at = std::ranges::find(groups_, group, [](const auto& each) { return each.first; });
@@ -152,16 +155,18 @@ class glb_writer {
     const std::size_t root = nodes.size();
     nodes.push_back(
         {{"name", "world"}, {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}}, {"children", below}});
-    const json all = {{"asset", {{"version", "2.0"}, {"generator", "clearance"}}},
-                      {"scene", 0},
-                      {"scenes", json::array({{{"nodes", json::array({root})}}})},
-                      {"nodes", nodes},
-                      {"meshes", meshes_},
-                      {"materials", materials_},
-                      {"accessors", accessors_},
-                      {"bufferViews", views_},
-                      {"buffers", json::array({{{"byteLength", data_.bytes().size()}}})}};
-    std::string text = all.dump(-1, ' ', false, json::error_handler_t::replace);  // what is not UTF-8 becomes U+FFFD
+
+    const json whole = {{"asset", {{"version", "2.0"}, {"generator", "clearance"}}},
+                        {"scene", 0},
+                        {"scenes", json::array({{{"nodes", json::array({root})}}})},
+                        {"nodes", nodes},
+                        {"meshes", meshes_},
+                        {"materials", materials_},
+                        {"accessors", accessors_},
+                        {"bufferViews", views_},
+                        {"buffers", json::array({{{"byteLength", data_.bytes().size()}}})}};
+
+    std::string text = whole.dump(-1, ' ', false, json::error_handler_t::replace);  // what is not UTF-8 becomes U+FFFD
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::uint64_t size = 28 + text.size() + data_.bytes().size();
     if (size > UINT32_MAX) refuse(file_, "a scene of more than 4 GiB cannot be written as glTF");
@@ -231,6 +236,7 @@ inline triangle_mesh icosphere(int cuts) {
       mesh.vertices.emplace_back(b, 0, a);
     }
   for (auto& v : mesh.vertices) v.normalize();
+
   const auto near = [&](std::uint32_t i, std::uint32_t k) { return mesh.vertices[i].dot(mesh.vertices[k]) > 0.4; };
   for (std::uint32_t i = 0; i < 12; ++i)
     for (std::uint32_t j = i + 1; j < 12; ++j)
@@ -239,6 +245,7 @@ inline triangle_mesh icosphere(int cuts) {
         const bool outward = mesh.vertices[i].cross(mesh.vertices[j]).dot(mesh.vertices[k]) > 0;
         mesh.triangles.push_back({i, outward ? j : k, outward ? k : j});
       }
+
   for (; cuts > 0; --cuts) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
     const auto middle = [&](std::uint32_t i, std::uint32_t k) {

@@ -39,12 +39,14 @@ packed_part take_part(byte_reader& in, const std::string& file) {
   part.name = in.take(in.take<std::uint32_t>());
   const std::string of = " of part " + io::quoted(part.name);
   for (auto* known : {&part.solid, &part.recipe}) std::ranges::copy(in.take(known->bytes.size()), known->bytes.begin());
+
   const auto length = [&] {
     const double value = in.take<double>();
     if (!(value >= 0)) refuse(file, "a length" + of + " is " + std::to_string(value));
     return value;
   };
   part.tolerance = length();
+
   detail::for_each_member(part.spheres, [&]<class T>(T& member) {
     if constexpr (std::same_as<T, double>) {
       member = length();
@@ -64,6 +66,7 @@ packed_part take_part(byte_reader& in, const std::string& file) {
       }
     }
   });
+
   const packing plain = uncertified(part.spheres.spheres);
   if (part.spheres.radius_min != plain.radius_min || part.spheres.radius_max != plain.radius_max)
     refuse(file, "the radii" + of + " are not what its figures say");

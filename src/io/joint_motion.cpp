@@ -13,7 +13,8 @@ joint_motion::joint_motion(const kinematic_tree& tree, std::vector<std::size_t> 
       from_(from.begin(), from.end()),
       to_(to.begin(), to.end()),
       base_(rigid(base, "the base")) {
-  tree.link_poses(from, options), tree.link_poses(to, options);
+  tree.link_poses(from, options);
+  tree.link_poses(to, options);
   for (const std::size_t link : links_)
     if (link >= tree.links().size())
       throw std::invalid_argument("the robot has " + std::to_string(tree.links().size()) +
@@ -42,7 +43,8 @@ part_travel joint_motion::travel(const std::vector<Eigen::Isometry3d>& poses, st
   const double radius = solid_radius(facts);
   const Eigen::Vector3d center = poses[link] * center_of(facts);
   double far = center_of(facts).norm() + radius, below = 0, rough = frames::pose_error;
-  part_travel all{0, 0, 0, 0};
+  part_travel sum{0, 0, 0, 0};
+
   for (std::size_t j; (j = tree_->joint_above(link)) != tree_->none; link = tree_->link(tree_->joints()[j].parent)) {
     const joint& by = tree_->joints()[j];
     double most = 0;
@@ -51,12 +53,14 @@ part_travel joint_motion::travel(const std::vector<Eigen::Isometry3d>& poses, st
       const double a = from_[drive.value], b = to_[drive.value], rate = std::abs(drive.factor * (b - a));
       most = std::abs(drive.factor) * std::max(std::abs(a), std::abs(b)) + drive.offsets;
       if (by.kind == joint_kind::prismatic) {
-        all.speed += rate, all.most += rate, below += rate;
+        sum.speed += rate;
+        sum.most += rate;
+        below += rate;
       } else if (rate > 0) {
         const Eigen::Vector3d arm = center - poses[link].translation();
-        all.speed += rate * std::min(far, arm.cross(poses[link].linear() * by.axis).norm() + radius);
-        all.growth += rate * below;
-        all.most += rate * far;
+        sum.speed += rate * std::min(far, arm.cross(poses[link].linear() * by.axis).norm() + radius);
+        sum.growth += rate * below;
+        sum.most += rate * far;
         below += rate * far;
       }
     }
@@ -64,9 +68,10 @@ part_travel joint_motion::travel(const std::vector<Eigen::Isometry3d>& poses, st
     rough += frames::pose_error * (2 + most) + 4 * skew(world_transform(by.origin));
     far += by.origin.translation().norm() + (by.kind == joint_kind::prismatic ? most : 0);
   }
-  all.rounding = rough * (far + base_.translation().norm());
-  for (double* x : {&all.speed, &all.growth, &all.most}) *x *= 1 + rough;
-  return all;
+
+  sum.rounding = rough * (far + base_.translation().norm());
+  for (double* x : {&sum.speed, &sum.growth, &sum.most}) *x *= 1 + rough;
+  return sum;
 }
 
 }  // namespace clearance::io

@@ -91,11 +91,13 @@ std::vector<Eigen::Isometry3d> kinematic_tree::link_poses(std::span<const double
   if (q.size() != size())
     throw std::invalid_argument("the robot has " + std::to_string(size()) + " movable joints, here are " +
                                 std::to_string(q.size()) + " values");
+
   std::vector<double> value(joints_.size(), 0.0);
   for (std::size_t i = 0; i < q.size(); ++i) {
     check_value(joints_[movable_[i]], q[i], options);
     value[movable_[i]] = q[i];
   }
+
   std::vector<double> terms(joints_.size(), 0.0),
       off(joints_.size(), 0.0);  // of followers: magnitudes, and what is lost
   for (const auto& [j, leader] : followers_) {
@@ -108,6 +110,7 @@ std::vector<Eigen::Isometry3d> kinematic_tree::link_poses(std::span<const double
       throw std::invalid_argument("joint \"" + joints_[j].name + "\" follows \"" + joints_[leader].name +
                                   "\" to a value that is not finite");
   }
+
   std::vector<Eigen::Isometry3d> poses(links_.size(), Eigen::Isometry3d::Identity());
   std::vector<chain_rounding> rounding(links_.size());
   for (const auto& [j, parent, child] : steps_) {
@@ -127,6 +130,7 @@ std::vector<Eigen::Isometry3d> kinematic_tree::link_poses(std::span<const double
       rounding[child].step(before, at(value[j] * by.axis), at(poses[child].translation()), std::abs(value[j]));
     }
     if (by.turns()) poses[child].rotate(Eigen::AngleAxisd(value[j], by.axis));
+
     if (!poses[child].matrix().allFinite())
       throw std::invalid_argument("joint \"" + by.name + "\" puts its link beyond what a number can hold");
     if (!rounding[child].covered(poses[child].translation().norm()))

@@ -80,22 +80,24 @@ mapped_cloud<point_span> map_points(const std::string& file, std::size_t header)
 detail::pcd_layout detail::pcd_layout_of(const std::string& file, std::size_t scalar) {
   // Opens the file once: by the time that its header is read, the name may belong to another file.
   const auto mapped = std::make_shared<const mapped_file>(file);
-  const std::span<const std::byte> all = mapped->bytes();
+  const std::span<const std::byte> bytes = mapped->bytes();
   const std::span<const std::byte> start =
-      all.first(std::min<std::size_t>(all.size(), 1 << 20));  // a header must be within this
+      bytes.first(std::min<std::size_t>(bytes.size(), 1 << 20));  // a header must be within this
   mapped->bring(start);
   std::string_view rest(reinterpret_cast<const char*>(start.data()), start.size());
   const pcd_header header = take_pcd_header(rest, file);
   const std::size_t before = start.size() - rest.size();
-  if (rest.empty() && start.size() < all.size()) refuse(file, "has a PCD header of 1 MiB or more");
-  rest = std::string_view(reinterpret_cast<const char*>(all.data()), all.size()).substr(before);
+  if (rest.empty() && start.size() < bytes.size()) refuse(file, "has a PCD header of 1 MiB or more");
+  rest = std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()).substr(before);
+
   if (header.data != pcd_header::encoding::binary)
     refuse(file, "is a PCD file whose DATA is not binary, which alone can be mapped (load_pcd reads it)");
   if (header.points > rest.size() / header.record_bytes)
     refuse(file, "POINTS says " + std::to_string(header.points) + " records of " + std::to_string(header.record_bytes) +
                      " bytes, but the file ends " + std::to_string(rest.size()) + " bytes after the header");
-  mapped->bring(all.last(std::min<std::size_t>(rest.size() - header.points * header.record_bytes, 4096)));
+  mapped->bring(bytes.last(std::min<std::size_t>(rest.size() - header.points * header.record_bytes, 4096)));
   check_pcd_end(rest.substr(header.points * header.record_bytes), header, file);
+
   detail::pcd_layout layout{.file = mapped, .before = before, .viewpoint = header.viewpoint};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const pcd_field& field = header.fields[header.xyz[axis]];
@@ -105,7 +107,8 @@ detail::pcd_layout detail::pcd_layout_of(const std::string& file, std::size_t sc
     layout.offset[axis] = std::uint32_t(field.offset);
   }
   if (header.record_bytes > 0xffffffff) refuse(file, "records of " + std::to_string(header.record_bytes) + " bytes");
-  layout.step = std::uint32_t(header.record_bytes), layout.count = header.points;
+  layout.step = std::uint32_t(header.record_bytes);
+  layout.count = header.points;
   if (header.points == 0) refuse(file, "POINTS is 0: there is nothing to map");
   return layout;
 }

@@ -47,14 +47,15 @@ loaded_mesh load_mesh_noted(const std::filesystem::path& path, const mesh_limits
   const std::string file = path.string();
   return within_memory(file, [&] {
     std::error_code failed;
-    const auto there = std::filesystem::status(path, failed);
-    if (std::filesystem::exists(there) && !std::filesystem::is_directory(there)) {
-      if (!std::filesystem::is_regular_file(there))
+    const auto status = std::filesystem::status(path, failed);
+    if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
+      if (!std::filesystem::is_regular_file(status))
         refuse(file, "is no regular file, and meshes are only read from those");
       if (std::filesystem::file_size(path, failed) > limits.bytes)
         refuse(file, "is longer than the " + std::to_string(limits.bytes) +
                          " bytes that the limit leaves (mesh_limits::bytes)");
     }
+
     std::string bytes = read_bytes(file);
     loaded_mesh made{.mesh = {}, .format = mesh_format(path, without_mark(bytes)), .bytes = bytes.size()};
     const std::string& format = made.format;
@@ -62,6 +63,7 @@ loaded_mesh load_mesh_noted(const std::filesystem::path& path, const mesh_limits
       bytes = as_utf8(std::move(bytes), file);
     mesh_limits left = limits;
     left.bytes -= std::min(left.bytes, made.bytes);
+
     std::uint64_t others = 0;
     const auto gltf = [&] {
       const glb_chunks chunks = format == "glb" ? read_glb_chunks(bytes, file) : glb_chunks{without_mark(bytes), {}};
@@ -73,6 +75,7 @@ loaded_mesh load_mesh_noted(const std::filesystem::path& path, const mesh_limits
                         : format == "stl" ? read_stl(bytes, file, made.notes)
                         : format == "dae" ? read_dae(bytes, file, limits, made.notes)
                                           : gltf();
+
     made.bytes += others;
     if (mesh.ends.empty()) refuse(file, "has no triangles");
     if (mesh.corners.size() - 2 * mesh.ends.size() > limits.triangles)

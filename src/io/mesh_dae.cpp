@@ -50,11 +50,13 @@ class dae_reader {
                                               "library_visual_scenes",
                                               "scene",
                                               "extra"});
+
     index_libraries();
     const xml_place visual = visual_scene();
     const double metre = unit(root_, 1);
     const std::string axis = up(root_, "Y_UP");
     const Eigen::Affine3d metres(Eigen::Scaling(metre));
+
     for (const auto& library : root_.element.children)
       if (library.name == "library_geometries" || library.name == "library_nodes" ||
           library.name == "library_visual_scenes")

@@ -71,6 +71,7 @@ polygon_mesh read_gltf(std::string_view text, std::optional<std::string_view> ch
              "extensions", "extras"});
   check_required_extensions(root);
   judge_gltf_extensions(root, notes);
+
   gltf_buffers buffers(root, chunk, file, limits);
   gltf_data data(root, buffers, limits, notes);
   std::vector<std::optional<polygon_mesh>> meshes(root.size("meshes"));
@@ -95,6 +96,7 @@ polygon_mesh read_gltf(std::string_view text, std::optional<std::string_view> ch
       stack.push_back({node, depth, above});
     }
   };
+
   mesh_scene made(file, limits);
   if (scene.has("nodes")) push(scene["nodes"], 1, Eigen::Affine3d::Identity());
   while (!stack.empty()) {
@@ -105,13 +107,14 @@ polygon_mesh read_gltf(std::string_view text, std::optional<std::string_view> ch
     check_gltf_node(node);
     if (node.has("skin")) node.refuse("has a skin, which is not supported");
     judge_gltf_extensions(node, notes);
-    const Eigen::Affine3d here = at.above * gltf_transform(node);
-    if (node.has("children")) push(node["children"], at.depth + 1, here);
+    const Eigen::Affine3d placed = at.above * gltf_transform(node);
+    if (node.has("children")) push(node["children"], at.depth + 1, placed);
     if (!node.has("mesh")) continue;
     auto& mesh = meshes[node["mesh"].index(meshes.size())];
     if (!mesh) mesh = data.mesh(root["meshes"][node["mesh"].index(meshes.size())]);
-    made.place(*mesh, here);
+    made.place(*mesh, placed);
   }
+
   for (std::size_t i = 0; i < nodes; ++i) {
     if (seen[i]) continue;
     const gltf_value node = root["nodes"][i];

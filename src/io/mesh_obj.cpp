@@ -157,7 +157,10 @@ class obj_reader {
                                  : *given < 0 ? *given + count + 1
                                               : *given;  // from 1; negative: from the end
       if (index < 1 || index > std::int64_t(UINT32_MAX)) refuse(file_, quoted(word) + " is no vertex of a face", at);
-      if (index > largest_) largest_ = std::uint32_t(index), largest_at_ = at;
+      if (index > largest_) {
+        largest_ = std::uint32_t(index);
+        largest_at_ = at;
+      }
       made_.corners.push_back(std::uint32_t(index - 1));
     }
     const std::size_t corners = made_.corners.size() - begin;

@@ -53,6 +53,7 @@ polygon_mesh read_ply_mesh(std::string_view rest, const std::string& file) {
   const ply_element* vertices = header.find("vertex");
   const std::uint64_t count = vertices ? vertices->count : 0;
   if (count > UINT32_MAX) refuse(file, "has more vertices than can be counted");
+
   polygon_mesh mesh;
   read_ply_values(
       rest, header, file,

@@ -23,9 +23,13 @@ polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
   polygon_mesh mesh;
   std::size_t at = 0;
   std::string_view line;
+
   const auto next = [&] {  // the next word in small letters; empty at the file's end
     std::string_view word;
-    while ((word = take_word(line)).empty() && !rest.empty()) line = take_line(rest), ++at;
+    while ((word = take_word(line)).empty() && !rest.empty()) {
+      line = take_line(rest);
+      ++at;
+    }
     std::string small(word);
     for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
     return small;
@@ -48,6 +52,7 @@ polygon_mesh read_ascii_stl(std::string_view rest, const std::string& file) {
     }
     return v;
   };
+
   for (std::string word = next(); !word.empty(); word = next()) {
     if (word != "solid") refuse(file, "expected \"solid\", found " + io::quoted(word), at);
     line = {};  // its name

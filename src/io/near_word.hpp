@@ -38,8 +38,12 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// Is the edit distance 1? Takes time in proportion to the words' length.
 inline bool one_letter_off(std::string_view a, std::string_view b) {
   const auto same = std::size_t(std::ranges::mismatch(a, b).in1 - a.begin());
-  a.remove_prefix(same), b.remove_prefix(same);
-  while (!a.empty() && !b.empty() && a.back() == b.back()) a.remove_suffix(1), b.remove_suffix(1);
+  a.remove_prefix(same);
+  b.remove_prefix(same);
+  while (!a.empty() && !b.empty() && a.back() == b.back()) {
+    a.remove_suffix(1);
+    b.remove_suffix(1);
+  }
   return std::max(a.size(), b.size()) == 1 || (a.size() == 2 && b.size() == 2 && a[0] == b[1] && a[1] == b[0]);
 }
 

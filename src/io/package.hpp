@@ -45,12 +45,14 @@ inline std::vector<std::filesystem::path> find_package(const std::string& name, 
   const auto add = [&](const fs::path& folder, bool fits) {
     if (fits && fs::is_directory(folder, failed)) found.push_back(folder);
   };
+
   fs::path above = fs::weakly_canonical(fs::absolute(urdf), failed).parent_path();
   for (bool more = !above.empty(); more; above = above.parent_path()) {
     add(above, above.filename() == name || is_package(above, name));
     add(above / name, true);
     more = above != above.root_path();
   }
+
   const auto each = [](const char* variable, auto visit) {
     const char* value = std::getenv(variable);
     std::string_view rest = value ? value : "";
@@ -60,6 +62,7 @@ inline std::vector<std::filesystem::path> find_package(const std::string& name, 
       if (!entry.empty()) visit(fs::path(entry));
     }
   };
+
   each("ROS_PACKAGE_PATH", [&](const fs::path& root) {
     add(root, root.filename() == name || is_package(root, name));
     add(root / name, true);
@@ -163,12 +166,14 @@ class mesh_lookup {
     for (std::size_t slash = path.find('/'); slash != path.npos; slash = path.find('/', slash + 1))
       starts.push_back(slash + 1);
     const auto name_at = [&](std::size_t k) { return path.substr(starts[k], starts[k + 1] - 1 - starts[k]); };
+
     for (std::size_t k = starts.size(); k-- > 1;) {  // the last first: a package may be below a folder of its name
       const auto given = packages_.find(name_at(k - 1));
       if (given == packages_.end()) continue;
       used_.insert(given->first);
       if (const auto file = given->second / path.substr(starts[k]); exists(file)) return {file};
     }
+
     for (std::size_t k = starts.size(); k-- > 2;)
       if (name_at(k - 2) == "share" && !packages_.contains(name_at(k - 1)))
         for (const auto& folder : find_package(name_at(k - 1), urdf_, packages_))
@@ -177,6 +182,7 @@ class mesh_lookup {
                     "has a mesh by a path that is not on this machine, which is taken from the package of its "
                     "name here (--package " +
                         sentence(name_at(k - 1), 60) + "=FOLDER takes it from FOLDER)"};
+
     const std::string missing = sentence(path, 120) + ": there is no such file";
     for (std::size_t k = 1; k < starts.size(); ++k) {
       const std::string name = name_at(k - 1), inside = path.substr(starts[k]);

@@ -19,7 +19,8 @@ packing uncertified(std::vector<inner_sphere> spheres) {
   if (!spheres.empty()) {
     const auto [least, most] = std::minmax_element(spheres.begin(), spheres.end(),
                                                    [](const auto& a, const auto& b) { return a.radius < b.radius; });
-    made.radius_min = least->radius, made.radius_max = most->radius;
+    made.radius_min = least->radius;
+    made.radius_max = most->radius;
   }
   made.spheres = std::move(spheres);
   return made;

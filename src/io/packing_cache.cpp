@@ -26,7 +26,11 @@ digest packing_key(const closed_mesh& mesh, const pack_options& options, std::st
   for (const std::uint64_t number : {std::uint64_t(count), std::uint64_t(seed), std::uint64_t(allow_overlap)})
     out.put(number);
   for (const double number : {smallest_radius, gap_target, gap_per_radius, gap_tolerance}) out.put(number);
-  (void)seconds, (void)threads, (void)progress, (void)cancelled;  // a packing that one of these stopped is not kept
+  // Not in the key: a packing that one of these stopped is not kept.
+  (void)seconds;
+  (void)threads;
+  (void)progress;
+  (void)cancelled;
   return digest_of(out.bytes());
 }
 

@@ -15,6 +15,7 @@ std::vector<part_radius> part_radii(const kinematic_tree& tree, std::span<const 
   if (links.size() != facts.size())
     refuse("there are " + std::to_string(links.size()) + " links of parts, but " + std::to_string(facts.size()) +
            " facts");
+
   const auto given = [&](std::span<const double> each, const std::string& what, double least) {
     if (!each.empty() && each.size() != tree.size())
       refuse("the robot has " + std::to_string(tree.size()) + " values, but there are " + std::to_string(each.size()) +
@@ -24,19 +25,22 @@ std::vector<part_radius> part_radii(const kinematic_tree& tree, std::span<const 
         refuse("the " + what + " of joint \"" + tree.movable(i).name + "\" is " + std::to_string(each[i]) +
                (least == 0 ? ", which must be 0 or more" : ", which is not finite"));
   };
-  given(of.errors, "error", 0), given(of.speeds, "speed", -double(infinity));
+  given(of.errors, "error", 0);
+  given(of.speeds, "speed", -double(infinity));
   if (!(of.delay >= 0 && std::isfinite(of.delay)))
     refuse("a delay is " + std::to_string(of.delay) + " s, which must be 0 or more");
-  std::vector<double> errors(tree.size()), all(tree.size());
+
+  std::vector<double> errors(tree.size()), together(tree.size());
   for (std::size_t i = 0; i < tree.size(); ++i) {
     errors[i] = of.errors.empty() ? 0 : of.errors[i];
-    all[i] = errors[i] + (of.speeds.empty() ? 0 : std::abs(of.speeds[i]) * of.delay);
+    together[i] = errors[i] + (of.speeds.empty() ? 0 : std::abs(of.speeds[i]) * of.delay);
   }
   const std::vector<Eigen::Isometry3d> poses = tree.link_poses(q, options);
-  const auto moved = [&](std::size_t link, const part_facts& its, const std::vector<double>& by_values) {
+
+  const auto moved = [&](std::size_t link, const part_facts& of_part, const std::vector<double>& by_values) {
     double by = 0;  // by the joints so far, from the part down to the base: each is where it would be without the next
-    const double radius = solid_radius(its);
-    const Eigen::Vector3d center = poses[link] * center_of(its);
+    const double radius = solid_radius(of_part);
+    const Eigen::Vector3d center = poses[link] * center_of(of_part);
     for (std::size_t j; (j = tree.joint_above(link)) != tree.none; link = tree.link(tree.joints()[j].parent)) {
       const joint& above = tree.joints()[j];
       if (above.kind == joint_kind::fixed) continue;
@@ -49,13 +53,14 @@ std::vector<part_radius> part_radii(const kinematic_tree& tree, std::span<const 
     }
     return by * (1 + 0x1p-30);  // more than rounding takes
   };
+
   std::vector<part_radius> radii;
   for (std::size_t k = 0; k < links.size(); ++k) {
     if (links[k] >= tree.links().size())
       refuse("the robot has " + std::to_string(tree.links().size()) + " links, and none of number " +
              std::to_string(links[k]));
     const double joints = moved(links[k], facts[k], errors);
-    radii.push_back({joints, std::max(0.0, moved(links[k], facts[k], all) - joints)});
+    radii.push_back({joints, std::max(0.0, moved(links[k], facts[k], together) - joints)});
   }
   return radii;
 }

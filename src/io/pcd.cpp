@@ -198,6 +198,7 @@ double pcd_value(const char* bytes, const pcd_field& field) {
     std::memcpy(&value, bytes, sizeof value);
     return double(value);
   };
+
   switch (field.size | (field.type == 'F' ? 16u : field.type == 'I' ? 32u : 64u)) {
     case 16 | 4:
       return as(float{});
@@ -253,6 +254,7 @@ double pcd_spelt(std::string_view word, const pcd_field& field, const std::strin
 std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& header, const std::string& file) {
   if (header.points > rest.size() / 2 + 1)  // a record needs at least a digit and a line end
     refuse(file, "POINTS says " + std::to_string(header.points) + ", more than a file of this size can hold");
+
   std::vector<Eigen::Vector3d> points;
   points.reserve(header.points);
   for (std::size_t at = header.lines + 1; !rest.empty(); ++at) {
@@ -274,6 +276,7 @@ std::vector<Eigen::Vector3d> pcd_ascii(std::string_view rest, const pcd_header& 
     }
     points.push_back(p);
   }
+
   if (points.size() != header.points)
     refuse(file, "POINTS says " + std::to_string(header.points) + ", but the file ends after " +
                      std::to_string(points.size()) + " records");

@@ -98,8 +98,9 @@ inline void take_ply_property(ply_header& header, ply_names& names, const std::v
 inline ply_header take_ply_header(std::string_view& rest, const std::string& file) {
   ply_header header;
   detail::ply_names names;
-  const std::string_view all = rest = without_mark(rest);
+  const std::string_view whole = rest = without_mark(rest);
   if (const auto first = take_line(rest); first != "ply" && first != "PLY") refuse(file, "is not a PLY file");
+
   for (header.lines = 1; !rest.empty();) {
     const auto line = words(take_line(rest));
     ++header.lines;
@@ -121,7 +122,7 @@ inline ply_header take_ply_header(std::string_view& rest, const std::string& fil
       detail::take_ply_property(header, names, line, file);
     } else if (line[0] == "end_header" && line.size() == 1) {
       if (header.format == ply_header::encoding::none) refuse(file, "the PLY header has no format");
-      rest = data_after(all, rest);
+      rest = data_after(whole, rest);
       return header;
     } else {
       refuse(file, quoted(line[0]) + " is no PLY header entry", header.lines);
@@ -148,7 +149,8 @@ class ply_values {
 
   /// Goes to record `number` of an element. In text each record has its own line; blank lines do not count.
   void begin(const ply_element& element, std::uint64_t number) {
-    element_ = &element, number_ = number;
+    element_ = &element;
+    number_ = number;
     if (!ascii()) return;
     do {
       if (rest_.empty())
@@ -219,6 +221,7 @@ class ply_values {
       bits |= std::uint64_t(static_cast<unsigned char>(rest_[k])) << 8 * place;
     }
     rest_.remove_prefix(size);
+
     switch (type) {
       case ply_type::int8:
         return double(std::int8_t(bits));
@@ -264,6 +267,7 @@ void read_ply_values(std::string_view rest, const ply_header& header, const std:
       axes.push_back(is_vertex && !p.count && (p.name == "x" || p.name == "y" || p.name == "z") ? p.name[0] - 'x' : -1);
     if (is_vertex && std::ranges::count_if(axes, [](int a) { return a >= 0; }) != 3)
       refuse(file, "PLY vertices need the properties x, y and z, once each");
+
     for (std::uint64_t i = 0; i < element.count; ++i) {
       values.begin(element, i);
       double position[3] = {};

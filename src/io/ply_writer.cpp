@@ -46,6 +46,7 @@ std::string ply_records(std::span<const Eigen::Vector3d> points, std::span<const
           record += sizeof values[0];
         },
         column.values);
+
   out.reserve(record * points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) out.put(points[i][k]);

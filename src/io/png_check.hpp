@@ -46,7 +46,8 @@ constexpr std::uint32_t adler32(std::string_view bytes) {
   while (!bytes.empty()) {
     const std::string_view piece = bytes.substr(0, 5552);  // as many as cannot overflow
     for (const char byte : piece) b += a += std::uint8_t(byte);
-    a %= 65521, b %= 65521;
+    a %= 65521;
+    b %= 65521;
     bytes.remove_prefix(piece.size());
   }
   return b << 16 | a;
@@ -71,6 +72,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n"sv;
   if (!bytes.starts_with(signature)) refuse(file, "is not a PNG image");
   bytes.remove_prefix(signature.size());
+
   std::uint64_t width = 0, height = 0;
   png_image image;
   bool data_ended = false;
@@ -82,6 +84,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     if (png_crc(bytes.substr(4, 4 + size)) != png_number(bytes.substr(8 + size)))
       refuse(file, "the PNG image is damaged (a checksum does not match)");
     const std::string_view data = bytes.substr(8, size);
+
     if (first != (name == "IHDR") || (first && size != 13)) refuse(file, "the PNG image has no proper header");
     if (first) {
       width = png_number(data);
@@ -107,6 +110,7 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     bytes.remove_prefix(12 + size);
     if (name == "IEND") break;
   }
+
   const std::uint64_t packed = image.packed.size();
   // Deflate packs at most 1032 bytes into one byte.
   if (width > (1u << 24) || height > (1u << 24) || (2 * width + 1) * height > 1032 * packed)
@@ -117,7 +121,8 @@ inline png_image check_depth_png(std::string_view bytes, const std::string& file
     refuse(file, std::to_string(packed) + " bytes unfold to " + std::to_string(width) + "x" + std::to_string(height) +
                      " pixels of " + mebibytes(memory) + ", more than the limit of " + mebibytes(limits.unfolded) +
                      " (read_limits::unfolded), which --unfold-limit of the command raises");
-  image.width = std::size_t(width), image.height = std::size_t(height);
+  image.width = std::size_t(width);
+  image.height = std::size_t(height);
   return image;
 }
 

@@ -30,18 +30,18 @@ kinematic_tree freed(const kinematic_tree& tree, const std::vector<std::string>&
   if (names.empty()) return tree;
   std::vector<joint> joints = tree.joints();
   for (const std::string& name : names) {
-    const auto its = std::ranges::find(joints, name, &joint::name);
-    if (its == joints.end() || !its->follows)
+    const auto found = std::ranges::find(joints, name, &joint::name);
+    if (found == joints.end() || !found->follows)
       throw std::invalid_argument("the robot has no joint \"" + name + "\" that follows another");
-    its->follows.reset();
+    found->follows.reset();
   }
   return kinematic_tree(tree.links(), std::move(joints));
 }
 
 std::string note_on_freed(const kinematic_tree& tree, const std::string& name) {
-  const auto its = std::ranges::find(tree.joints(), name, &joint::name);
+  const auto found = std::ranges::find(tree.joints(), name, &joint::name);
   return "joint \"" + name + "\" has a value of its own here, which wins over what it would follow \"" +
-         its->follows->joint + "\" to by <mimic>";
+         found->follows->joint + "\" to by <mimic>";
 }
 
 namespace {
@@ -136,9 +136,9 @@ class gltf_judge {
 }  // namespace
 
 std::vector<Eigen::Isometry3d> robot::poses(std::span<const double> configuration, joint_options options) const {
-  const auto all = tree_.link_poses(configuration, options);
+  const auto link_poses = tree_.link_poses(configuration, options);
   std::vector<Eigen::Isometry3d> made;
-  for (const auto& part : parts_) made.push_back(all[part.link]);
+  for (const auto& part : parts_) made.push_back(link_poses[part.link]);
   return made;
 }
 
@@ -154,6 +154,7 @@ robot load_robot(const std::filesystem::path& urdf, const robot_options& options
   for (const auto& name : options.exclude_links)
     if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
       throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
+
   const auto asked = [&](const urdf_link& link) {
     return std::ranges::find(options.exclude_links, link.name) == options.exclude_links.end() &&
            !(link.collision.empty() && link.visual.empty());
@@ -162,12 +163,14 @@ robot load_robot(const std::filesystem::path& urdf, const robot_options& options
     const bool visual = options.geometry == robot_geometry::visual;
     return (visual ? link.visual.empty() : !link.collision.empty()) ? link.collision : link.visual;
   };
+
   std::size_t round = 0;
   for (const urdf_link& link : file.links)
     if (asked(link)) round += std::size_t(std::ranges::count_if(shapes(link), &urdf_shape::round));
   std::vector<robot_part> parts;
   robot_reader reader(urdf, options, round, file.notes);
   std::optional<gltf_judge> judge;  // reads more than the robot needs, so only if a mesh is glTF
+
   for (const urdf_link& link : file.links) {
     if (!asked(link)) continue;
     robot_part part{link.name, {}, 0, options.geometry, file.tree.link(link.name)};
@@ -188,6 +191,7 @@ robot load_robot(const std::filesystem::path& urdf, const robot_options& options
     }
     parts.push_back(std::move(part));
   }
+
   if (parts.empty())
     refuse(urdf.string(),
            options.exclude_links.empty() ? "no link has geometry" : "no link that is not excluded has geometry");

@@ -159,14 +159,16 @@ std::vector<body> make_bodies(const std::vector<body_source>& sources, const bod
   account.cached.assign(sources.size(), false);
   close(sources, made, options);
   for (std::size_t k = 0; k < sources.size(); ++k) try {
-      if (sources[k].given)
+      if (sources[k].given) {
         fill(made[k], *sources[k].given, options, account);
-      else if (!options.spheres)
+      } else if (!options.spheres) {
         continue;
-      else if (has_inside(made[k].closed) || !options.sheets)
+      } else if (has_inside(made[k].closed) || !options.sheets) {
         to_pack.push_back(k);
-      else
-        line(made[k], options), lined.push_back(made[k].name);
+      } else {
+        line(made[k], options);
+        lined.push_back(made[k].name);
+      }
     } catch (const std::invalid_argument& error) {
       refuse_link(made[k].name, error);
     }

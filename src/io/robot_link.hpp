@@ -97,9 +97,11 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
                                           {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+
   // Triangles are largest in the middle of a face; there the error is 0.292 radius / n^2.
   const double most = std::max(2.0, std::floor(std::sqrt(triangles / 20.0)));
   const auto n = std::uint32_t(std::clamp(std::ceil(std::sqrt(0.292 * radius / tolerance)), 2.0, most));
+
   tessellation made;
   // Faces share the vertices on their edges, so a vertex is identified by its corners and their weights.
   std::map<std::array<std::uint32_t, 6>, std::uint32_t> known;
@@ -124,6 +126,7 @@ inline tessellation tessellate_sphere(double radius, double tolerance = 1e-4,
         if (i + j + 1 < n) made.mesh.triangles.push_back({vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
       }
   }
+
   for (const auto& t : made.mesh.triangles) made.error = std::max(made.error, beyond(made.mesh, t, radius));
   made.error += 1e-15 * radius;
   return made;
@@ -138,6 +141,7 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
   const double most = std::max(2.0, std::floor(std::sqrt(triangles / 16.0)));
   const auto rings = std::uint32_t(std::clamp(std::ceil(pi / 4 * std::sqrt(radius / tolerance)), 2.0, most));
   const std::uint32_t n = 4 * rings;  // sides: 4 n rings triangles
+
   tessellation made;
   made.mesh.vertices = {{0, 0, 0.5 * length + radius}, {0, 0, -0.5 * length - radius}};
   for (std::uint32_t k = 1; k <= 2 * rings; ++k) {  // from the upper pole down; the equator is there twice
@@ -147,6 +151,7 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
                                       radius * std::sin(at) * std::sin(2 * pi * i / n),
                                       up * length + radius * std::cos(at));
   }
+
   const auto vertex = [&](std::uint32_t k, std::uint32_t i) { return 2 + (k - 1) * n + i % n; };
   for (std::uint32_t i = 0; i < n; ++i) {
     made.mesh.triangles.push_back({0, vertex(1, i), vertex(1, i + 1)});
@@ -156,6 +161,7 @@ inline tessellation tessellate_capsule(double radius, double length, double tole
     }
     made.mesh.triangles.push_back({1, vertex(2 * rings, i + 1), vertex(2 * rings, i)});
   }
+
   triangle_mesh ball = made.mesh;  // without the cylinder; the corners of a ring bound the error of its sides
   for (std::uint32_t v = 0; v < ball.vertices.size(); ++v)
     ball.vertices[v].z() += (v == 0 || (v > 1 && v < 2 + rings * n) ? -0.5 : 0.5) * length;
@@ -202,6 +208,7 @@ class robot_reader {
       if (const std::string named = sentence(file_, 200) + ": "; why.starts_with(named)) why.erase(0, named.size());
       refuse(file_, owner + why, shape.line);
     }
+
     const std::uint64_t triangles = added.mesh.triangles.size();
     if (triangles > left_.triangles)
       refuse(file_,
@@ -209,6 +216,7 @@ class robot_reader {
                  " triangles (mesh_limits::triangles)",
              shape.line);
     left_.triangles -= triangles;
+
     const auto first = std::uint32_t(part.mesh.vertices.size());
     if (part.mesh.vertices.size() + added.mesh.vertices.size() > UINT32_MAX)
       refuse(file_, owner + "it has more vertices than can be counted", shape.line);
@@ -217,6 +225,7 @@ class robot_reader {
       if (!part.mesh.vertices.back().allFinite())
         refuse(file_, owner + "its origin or scale puts a vertex beyond what a number can hold", shape.line);
     }
+
     part.mesh.shapes.push_back(std::uint32_t(part.mesh.triangles.size()));
     for (const auto& t : added.mesh.triangles)
       part.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});

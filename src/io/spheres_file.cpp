@@ -18,6 +18,7 @@ packing load_spheres_csv(const std::string& file) {
   std::string_view rest = without_mark(bytes);
   std::vector<inner_sphere> spheres;
   bool header_may_come = true;
+
   for (std::size_t at = 1; !rest.empty(); ++at) {
     std::string_view line = take_line(rest);
     line = without_comment(line, separators);
@@ -25,6 +26,7 @@ packing load_spheres_csv(const std::string& file) {
     for (auto word = take_word(line, separators); !word.empty(); word = take_word(line, separators))
       fields.push_back(word);
     if (fields.empty()) continue;
+
     if (header_may_come)
       for (auto& name : fields)
         if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
@@ -36,6 +38,7 @@ packing load_spheres_csv(const std::string& file) {
         refuse(file, "the header is not x,y,z,r", at);
       continue;
     }
+
     if (fields.size() != 4)
       refuse(file, "a sphere needs four numbers, x,y,z,r; here are " + std::to_string(fields.size()), at);
     float n[4];

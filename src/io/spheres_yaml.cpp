@@ -68,10 +68,10 @@ class yaml_keys final : public YAML::EventHandler {
       refuse(file_, "has more than " + std::to_string(limits_.values) + " YAML values (mesh_limits::values)",
              line(mark));
     if (open_.empty() || !open_.back().map) return;
-    level& here = open_.back();
-    if (here.key_next && scalar && !here.keys.insert(*scalar).second)
+    level& around = open_.back();
+    if (around.key_next && scalar && !around.keys.insert(*scalar).second)
       refuse(file_, "has the key " + io::quoted(*scalar) + " twice", line(mark));
-    here.key_next = !here.key_next;
+    around.key_next = !around.key_next;
   }
 
   const std::string& file_;
@@ -183,6 +183,7 @@ std::vector<packed_part> load_spheres_yaml(const std::string& file, const mesh_l
   std::vector<std::string> said;
   std::set<std::string> names;
   std::size_t spheres = 0;
+
   try {
     YAML::Node at = parse_yaml(bytes, file, limits);
     const auto judge = [&] {
@@ -194,6 +195,7 @@ std::vector<packed_part> load_spheres_yaml(const std::string& file, const mesh_l
         at.reset(at[above]);
         judge();
       }
+
     if (!at.IsMap() || !at["collision_spheres"]) refuse(file, "has no collision_spheres");
     const YAML::Node links = at["collision_spheres"];
     if (links.IsScalar())
@@ -201,6 +203,7 @@ std::vector<packed_part> load_spheres_yaml(const std::string& file, const mesh_l
     if (!links.IsMap() || links.size() == 0) refuse(file, "its collision_spheres name no link");
     const yaml_buffer buffer(at["collision_sphere_buffer"], file);
     if (buffer.grows()) said.push_back("has a collision_sphere_buffer, which is added to the radii");
+
     for (const auto& link : links) {
       if (!link.first.IsScalar()) refuse(file, "a link's name is no word");
       const std::string name = link.first.Scalar();

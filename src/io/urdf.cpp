@@ -61,16 +61,21 @@ urdf_geometry read_urdf_geometry(const xml_place& around) {
   std::size_t count = 0;
   for (const auto& child : around.element.children)
     for (const char* known : {"box", "sphere", "cylinder", "capsule", "mesh"})
-      if (child.name == known) only = &child, ++count;
+      if (child.name == known) {
+        only = &child;
+        ++count;
+      }
   if (count == 0 && around.element.children.size() == 1)
     around.in(around.element.children.front()).refuse("is no shape of URDF");
   if (count != 1) around.refuse("has " + std::to_string(count) + " shapes, not one");
+
   const xml_place shape = around.in(*only);
   const std::string& kind = shape.element.name;
   const auto length = [&](double value, const char* what) {
     if (!(value >= 0)) shape.refuse("has a " + std::string(what) + " below 0");
     return value;
   };
+
   if (kind == "box") {
     const auto size = shape.numbers<3>("size");
     return urdf_box{{length(size[0], "side"), length(size[1], "side"), length(size[2], "side")}};
@@ -84,6 +89,7 @@ urdf_geometry read_urdf_geometry(const xml_place& around) {
     if (kind == "cylinder") return urdf_cylinder{radius, along};
     return urdf_capsule{radius, along};
   }
+
   urdf_mesh mesh{shape.attribute("filename"), {1, 1, 1}};
   if (mesh.uri.empty() || mesh.uri.find('\0') != mesh.uri.npos) shape.refuse("has an empty file name");
   if (shape.element.attribute("scale")) {
@@ -114,7 +120,8 @@ urdf_link read_urdf_link(const xml_place& at) {
 /// A joint as a file has it.
 struct urdf_joint {
   joint made;
-  enum class freedom { usual, planar, floating } moves = freedom::usual;  ///< Else `made` is fixed, until it is split.
+  /// If it is not usual, `made` is fixed until it is split.
+  enum class freedom { usual, planar, floating } moves = freedom::usual;
   std::size_t line = 0;
 
   std::string who() const { return "joint " + io::quoted(made.name); }
@@ -125,16 +132,18 @@ urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   joint& made = read.made;
   made.name = urdf_name(at);
   const std::string owner = read.who();
-  const xml_place here{at.element, at.file, owner};
+  const xml_place place{at.element, at.file, owner};
+
   const auto link = [&](const char* which) {
-    const xml_element* element = here.child(which);
-    if (!element) here.refuse("has no <" + std::string(which) + ">");
-    return urdf_name(here.in(*element), "link");
+    const xml_element* element = place.child(which);
+    if (!element) place.refuse("has no <" + std::string(which) + ">");
+    return urdf_name(place.in(*element), "link");
   };
   made.parent = link("parent");
   made.child = link("child");
-  made.origin = urdf_origin(here);
-  const std::string& type = here.attribute("type");
+  made.origin = urdf_origin(place);
+
+  const std::string& type = place.attribute("type");
   if (type == "floating")
     read.moves = urdf_joint::freedom::floating;
   else if (type == "planar")
@@ -146,25 +155,29 @@ urdf_joint read_urdf_joint(const xml_place& at, note_tally& notes) {
   else if (type == "prismatic")
     made.kind = joint_kind::prismatic;
   else if (type != "fixed")
-    here.refuse("has the unknown type " + io::quoted(type));
+    place.refuse("has the unknown type " + io::quoted(type));
+
   const bool planar = read.moves == urdf_joint::freedom::planar;
-  if (const xml_element* axis = here.child("axis"); axis && (made.kind != joint_kind::fixed || planar)) {
-    const auto xyz = here.in(*axis).numbers<3>("xyz");
+  if (const xml_element* axis = place.child("axis"); axis && (made.kind != joint_kind::fixed || planar)) {
+    const auto xyz = place.in(*axis).numbers<3>("xyz");
     made.axis << xyz[0], xyz[1], xyz[2];
   }
-  const xml_element* limit = here.child("limit");
+
+  const xml_element* limit = place.child("limit");
   if (made.kind == joint_kind::revolute || made.kind == joint_kind::prismatic) {
-    if (!limit) here.refuse("has no <limit>, which a " + type + " joint needs");
-    const xml_place at_limit = here.in(*limit);
+    if (!limit) place.refuse("has no <limit>, which a " + type + " joint needs");
+    const xml_place at_limit = place.in(*limit);
     made.lower = at_limit.number_or("lower", 0);  // URDF's default
     made.upper = at_limit.number_or("upper", 0);
     if (made.lower > made.upper) {
       notes.add("has a lower limit above its upper limit, and is taken to have none", owner, limit->line);
-      made.lower = -std::numeric_limits<double>::infinity(), made.upper = std::numeric_limits<double>::infinity();
+      made.lower = -std::numeric_limits<double>::infinity();
+      made.upper = std::numeric_limits<double>::infinity();
     }
   }
-  if (const xml_element* mimicked = here.child("mimic")) {
-    const xml_place follow = here.in(*mimicked);
+
+  if (const xml_element* mimicked = place.child("mimic")) {
+    const xml_place follow = place.in(*mimicked);
     if (read.moves != urdf_joint::freedom::usual) follow.refuse("is for joints of one value, and this one is " + type);
     if (made.kind == joint_kind::fixed)
       notes.add("is fixed, and its <mimic> is passed over", owner, mimicked->line);
@@ -232,7 +245,8 @@ joint step_of(const joint& whole, const std::string& name) {
   joint made;
   made.name = whole.name + "/" + name;
   made.kind = name.size() == 1 ? joint_kind::prismatic : joint_kind::continuous;
-  made.parent = whole.parent, made.child = whole.child;
+  made.parent = whole.parent;
+  made.child = whole.child;
   made.axis = name == "x" || name == "roll"    ? Eigen::Vector3d::UnitX()
               : name == "y" || name == "pitch" ? Eigen::Vector3d::UnitY()
                                                : Eigen::Vector3d::UnitZ();
@@ -257,6 +271,7 @@ std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::
       made.push_back(each.made);
       continue;
     }
+
     std::vector<joint> chain;
     std::string moves;  // in the order of the motions, from the parent on
     if (each.moves == freedom::floating) {
@@ -278,6 +293,7 @@ std::vector<joint> split_joints(const std::vector<urdf_joint>& read, const std::
       chain.back().axis = normal;
       moves = moves.substr(0, moves.size() - 2) + " (m), NAME/theta (rad)";
     }
+
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
       links.push_back(chain[k].name);
       chain[k].child = chain[k + 1].parent = links.back();
@@ -304,6 +320,7 @@ urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool str
   const std::size_t begin = declaration_after_blanks(text);
   const xml_element root = read_xml(std::string_view(text).substr(begin), file, limits, xml_prefixes::any);
   if (root.name != "robot") refuse(file, "is not a URDF file: it has no element robot", root.line);
+
   urdf_file made;
   made.notes = note_tally(file, strict);
   if (begin > 0) made.notes.add("stand before the XML declaration, and are passed over", "blanks", 1);
@@ -313,6 +330,7 @@ urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool str
     made.name = urdf_name(robot);
   else
     made.notes.add("has no name", "<robot>", root.line);
+
   std::vector<std::string> names;
   std::vector<urdf_joint> read;
   for (const auto& child : root.children) {
@@ -323,6 +341,7 @@ urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool str
       read.push_back(read_urdf_joint(robot.in(child), made.notes));
     }
   }
+
   if (names.empty()) refuse(file, "is no valid URDF: it has no link");
   free_followers(read, file, made.notes);
   add_world(names, read, file, made.notes);

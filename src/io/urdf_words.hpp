@@ -17,38 +17,67 @@ namespace clearance::io {
 /// What an element may hold: words separated by blanks.
 struct urdf_words {
   std::string_view element;
-  std::string_view attributes, attributes_unused;  ///< Read; defined, but unused here.
-  std::string_view children, children_unused;      ///< The same for elements. The unused may not contain a shape.
+  std::string_view attributes = {};         ///< Attributes that are read.
+  std::string_view attributes_unused = {};  ///< Attributes that URDF defines, and nobody reads.
+  std::string_view children = {};           ///< Elements that are read.
+  std::string_view children_unused = {};    ///< Elements that URDF defines, and nobody reads. None may contain a shape.
   /// Other elements that are common, whatever they resemble; a bare <geometry> may be in them.
   std::string_view children_noted = {};
   /// Refused, as attribute or element: they would change the answer if they meant what they say. So are words of sizes,
   /// everywhere.
   std::string_view watched = {};
-  bool places = false;  ///< It says where something is, or how large: refuses whatever resembles its words.
+  bool places = false;  ///< The element says where something is, or how large: refuses whatever resembles its words.
 };
 
 inline constexpr urdf_words urdf_vocabulary[] = {
-    {"robot", "name", "version", "link joint", "material transmission gazebo sensor ros2_control", "",
-     "include macro robot"},
-    {"link", "name", "type", "visual collision", "inertial contact sensor",
-     "self_collision_checking collision_checking self_filter origin", "include"},
-    {"visual", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
-    {"collision", "", "name group", "origin geometry", "material contact_coefficients verbose", "", placing},
-    {"geometry", "", "name", "box sphere cylinder capsule mesh", "", "", "origin"},
-    {"origin", "xyz rpy", "", "", "", "",
-     "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw", true},
-    {"box", "size", "", "", "", "", "origin", true},
-    {"sphere", "radius", "", "", "", "", "origin", true},
-    {"cylinder", "radius length", "", "", "", "", "origin", true},
-    {"capsule", "radius length", "", "", "", "", "origin", true},
-    {"mesh", "filename scale", "", "", "", "", "origin", true},
-    {"joint", "name type", "", "origin parent child axis limit mimic",
-     "dynamics calibration safety_controller disable_collision", "", placing},
-    {"parent", "link", "", "", "", "", "origin", true},
-    {"child", "link", "", "", "", "", "origin", true},
-    {"axis", "xyz", "", "", "", "", "origin", true},
-    {"limit", "lower upper", "effort velocity acceleration deceleration jerk power", "", ""},
-    {"mimic", "joint multiplier offset", "", "", ""},
+    {.element = "robot",
+     .attributes = "name",
+     .attributes_unused = "version",
+     .children = "link joint",
+     .children_unused = "material transmission gazebo sensor ros2_control",
+     .watched = "include macro robot"},
+    {.element = "link",
+     .attributes = "name",
+     .attributes_unused = "type",
+     .children = "visual collision",
+     .children_unused = "inertial contact sensor",
+     .children_noted = "self_collision_checking collision_checking self_filter origin",
+     .watched = "include"},
+    {.element = "visual",
+     .attributes_unused = "name group",
+     .children = "origin geometry",
+     .children_unused = "material contact_coefficients verbose",
+     .watched = placing},
+    {.element = "collision",
+     .attributes_unused = "name group",
+     .children = "origin geometry",
+     .children_unused = "material contact_coefficients verbose",
+     .watched = placing},
+    {.element = "geometry",
+     .attributes_unused = "name",
+     .children = "box sphere cylinder capsule mesh",
+     .watched = "origin"},
+    {.element = "origin",
+     .attributes = "xyz rpy",
+     .watched = "pose quat quat_xyzw quaternion wxyz rotation translation position orientation x y z roll pitch yaw",
+     .places = true},
+    {.element = "box", .attributes = "size", .watched = "origin", .places = true},
+    {.element = "sphere", .attributes = "radius", .watched = "origin", .places = true},
+    {.element = "cylinder", .attributes = "radius length", .watched = "origin", .places = true},
+    {.element = "capsule", .attributes = "radius length", .watched = "origin", .places = true},
+    {.element = "mesh", .attributes = "filename scale", .watched = "origin", .places = true},
+    {.element = "joint",
+     .attributes = "name type",
+     .children = "origin parent child axis limit mimic",
+     .children_unused = "dynamics calibration safety_controller disable_collision",
+     .watched = placing},
+    {.element = "parent", .attributes = "link", .watched = "origin", .places = true},
+    {.element = "child", .attributes = "link", .watched = "origin", .places = true},
+    {.element = "axis", .attributes = "xyz", .watched = "origin", .places = true},
+    {.element = "limit",
+     .attributes = "lower upper",
+     .attributes_unused = "effort velocity acceleration deceleration jerk power"},
+    {.element = "mimic", .attributes = "joint multiplier offset"},
 };
 /// Refused wherever they do not belong.
 inline constexpr std::string_view urdf_parts = "link joint visual collision geometry";
@@ -148,6 +177,7 @@ class urdf_judge {
         child.refuse("has a shape in it, which belongs elsewhere");
       return false;
     }
+
     const bool shapes = holds_any(child.element, "visual collision geometry box sphere cylinder capsule mesh");
     const std::string where = "is not known in <" + at.element.name + ">";
     if (has_word(words.children_noted, name)) {

@@ -54,6 +54,7 @@ class xml_reader {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr),
                                                                               &XML_ParserFree);
     if (!parser) throw std::bad_alloc();
+
     parser_ = parser.get();
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(
@@ -67,6 +68,7 @@ class xml_reader {
     XML_SetStartDoctypeDeclHandler(parser_, [](void* self, const char*, const char*, const char*, int) {
       static_cast<xml_reader*>(self)->guarded([&] { throw "it declares a document type, which is not supported"; });
     });
+
     constexpr std::size_t piece = 1 << 24;  // expat counts in int
     for (bool last = false; !last; bytes.remove_prefix(std::min(piece, bytes.size()))) {
       last = bytes.size() <= piece;

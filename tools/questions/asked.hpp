@@ -32,7 +32,7 @@ using other_trees = std::variant<trees_in<clearance::aabb, clearance::inner_sphe
 /// Trees of one robot, and clouds, in memory of a backend. Trees are a clearance::any::model or `other_trees`.
 struct backend_memory {
   virtual ~backend_memory() = default;
-  /// The same clouds in memory that the backend reads; copies stay until the next call.
+  /// The clouds in memory that the backend reads; copies stay until the next call.
   virtual std::vector<cloud> put(const std::vector<cloud>& clouds) = 0;
   /// The fastest trees of the chosen model, and those of the chosen volume, if it is another; each is built once.
   virtual std::shared_ptr<const void> usual() = 0;

@@ -34,12 +34,12 @@ class memory_on final : public backend_memory {
   std::vector<cloud> put(const std::vector<cloud>& clouds) override {
     copies_.clear();
     const clearance::frames::readable_on<Backend> readable{on_, copies_};
-    std::vector<cloud> there;
+    std::vector<cloud> readable_clouds;
     clearance::for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d& pose) {
-      there.push_back(clearance::placed{readable(source, std::uint32_t(there.size())), pose});
+      readable_clouds.push_back(clearance::placed{readable(source, std::uint32_t(readable_clouds.size())), pose});
     });
     on_.wait();
-    return there;
+    return readable_clouds;
   }
 
   std::shared_ptr<const void> usual() override {
@@ -77,10 +77,10 @@ class memory_on final : public backend_memory {
     stopwatch clock;
     const auto made = make(*asked_.bodies);
     build += clock.lap();
-    auto there = made.on(on_);
+    auto moved_model = made.on(on_);
     on_.wait();
     upload += clock.lap();
-    return there;
+    return moved_model;
   }
   template <class Robot>
   Robot fielded(Robot robot) {
@@ -89,7 +89,8 @@ class memory_on final : public backend_memory {
     auto made = asked_.fields == field_use::always ? clearance::io::with_fields_cached(on_, std::move(robot), {}, cache)
                                                    : clearance::io::with_kept_fields(std::move(robot), {}, cache);
     without_field = std::move(made.without);
-    fields = made.model.fields().size(), fields_cached = fields == 0 ? 0 : made.found;
+    fields = made.model.fields().size();
+    fields_cached = fields == 0 ? 0 : made.found;
     return std::move(made.model);
   }
 

@@ -51,7 +51,7 @@ class devices {
   void wait() const {
     for (const device& on : each_) on.wait();
   }
-  /// The same, even if one of them has failed.
+  /// Waits for every device, even if one of them has failed.
   void wait_for_all() const noexcept {
     for (const device& on : each_) {
       try {

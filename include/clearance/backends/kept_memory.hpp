@@ -20,7 +20,7 @@ namespace clearance::backends {
 template <class T, std::uint32_t Few>
 struct few_values {
   T here[Few] = {};
-  const T* there = nullptr;  ///< All of them, or null.
+  const T* there = nullptr;  ///< All values, if they are more than `Few`; else null.
 
   CLEARANCE_HD T operator[](std::uint32_t i) const { return there == nullptr ? here[i] : there[i]; }
 };

@@ -132,7 +132,8 @@ auto build(const R& input, build_options options = {}, Fit fit = {}, Split split
         throw std::invalid_argument("clearance::build: primitive " + std::to_string(id) +
                                     " is not finite or has a negative radius");
       const vec3 r{b.radius, b.radius, b.radius};
-      lower = splits::least(lower, b.center - r), upper = splits::most(upper, b.center + r);
+      lower = splits::least(lower, b.center - r);
+      upper = splits::most(upper, b.center + r);
     }
     if constexpr (requires { primitives[id].consistent(); })
       if (!primitives[id].consistent())

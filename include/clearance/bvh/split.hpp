@@ -36,14 +36,19 @@ struct symmetric {
   float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
   void add_square(vec3 a) {
-    xx += a.x * a.x, xy += a.x * a.y, xz += a.x * a.z, yy += a.y * a.y, yz += a.y * a.z, zz += a.z * a.z;
+    xx += a.x * a.x;
+    xy += a.x * a.y;
+    xz += a.x * a.z;
+    yy += a.y * a.y;
+    yz += a.y * a.z;
+    zz += a.z * a.z;
   }
   symmetric less(float of_diagonal) const { return {xx - of_diagonal, xy, xz, yy - of_diagonal, yz, zz - of_diagonal}; }
   vec3 column(int k) const { return k == 0 ? vec3{xx, xy, xz} : (k == 1 ? vec3{xy, yy, yz} : vec3{xz, yz, zz}); }
 };
 
-/// The eigenvalues, ascending, by the roots of the characteristic polynomial. Its trace should be near 0, and its
-/// largest entry 1.
+/// The eigenvalues, ascending, by the roots of the characteristic polynomial. The matrix should have a trace near 0 and
+/// a largest entry of 1.
 inline void eigenvalues(const symmetric& m, float (&roots)[3]) {
   constexpr float third = 1.0f / 3.0f;
   const float root_of_3 = std::sqrt(3.0f);
@@ -112,7 +117,7 @@ struct split_item {
     const vec3 c = plain_center();
     return {c.x, c.y, c.z};
   }
-  /// The same in plain floats, as all rules here use it: compilers are slow with operators of Eigen.
+  /// The centre in plain floats, as the rules of this file use it: compilers are slow with operators of Eigen.
   vec3 plain_center() const {
     return {(lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2, (lower[2] + upper[2]) / 2};
   }
@@ -167,7 +172,10 @@ inline Eigen::Vector3f principal_direction(std::span<const split_item> items) {
 struct median_split {
   std::size_t operator()(std::span<split_item> items) const {
     vec3 lo = items[0].plain_center(), hi = lo;
-    for (const auto& i : items) lo = splits::least(lo, i.plain_center()), hi = splits::most(hi, i.plain_center());
+    for (const auto& i : items) {
+      lo = splits::least(lo, i.plain_center());
+      hi = splits::most(hi, i.plain_center());
+    }
     const vec3 wide = hi - lo;
     // Products by 0 and 1 keep the order of coordinates, so one selection serves this rule and the next.
     const int axis = wide.y > wide.x ? (wide.z > wide.y ? 2 : 1) : (wide.z > wide.x ? 2 : 0);
@@ -223,24 +231,28 @@ struct neural_gas_split {
     const Eigen::Vector3f principal = principal_direction(items);
     std::sort(items.begin(), items.end(), center_order{principal});
     std::array<vec3, 2> mean = {items[n / 4].plain_center(), items[n - 1 - n / 4].plain_center()};
+
     for (int round = 0; round < rounds; ++round) {
       const float width =
           std::pow(0.01f, float(round) / (rounds - 1));  // of the neighbourhood: shrinks from one rank to a hundredth
       const std::array<float, 2> pull = {1, std::exp(-1 / width)};
       std::array<vec3, 2> sum = {};
-      std::array<float, 2> all = {0, 0};
+      std::array<float, 2> weight = {0, 0};
+
       for (const auto& i : items) {
         const vec3 c = i.plain_center(), to_0 = c - mean[0], to_1 = c - mean[1];
         const std::size_t near = splits::plain_dot(to_1, to_1) < splits::plain_dot(to_0, to_0);
         const float volume = (i.upper[0] - i.lower[0]) * ((i.upper[1] - i.lower[1]) * (i.upper[2] - i.lower[2]));
         for (const std::size_t k : {near, 1 - near}) {
           const float by = pull[k != near] * volume;
-          sum[k] = sum[k] + splits::times(by, c), all[k] += by;
+          sum[k] = sum[k] + splits::times(by, c);
+          weight[k] += by;
         }
       }
       for (std::size_t k = 0; k < 2; ++k)
-        if (all[k] > 0 && splits::all_finite(sum[k])) mean[k] = splits::over(sum[k], all[k]);
+        if (weight[k] > 0 && splits::all_finite(sum[k])) mean[k] = splits::over(sum[k], weight[k]);
     }
+
     vec3 way = mean[1] - mean[0];
     if (!(splits::plain_length(way) > 0) || !splits::all_finite(way)) way = splits::floats_of(principal);
     std::sort(items.begin(), items.end(), center_order{splits::for_eigen(way)});
@@ -265,7 +277,11 @@ struct surface_area_split {
       sweep(items.rbegin(), items.rend(), right.begin());
       for (std::size_t k = least; k + least <= n; ++k) {
         const float cost = float(k) * left[k - 1] + float(n - k) * right[n - k - 1];
-        if (cost < best) best = cost, cut = k, best_direction = direction;
+        if (cost < best) {
+          best = cost;
+          cut = k;
+          best_direction = direction;
+        }
       }
     }
     std::sort(items.begin(), items.end(), center_order{best_direction});
@@ -277,7 +293,8 @@ struct surface_area_split {
   static void sweep(In first, In last, Out area) {
     vec3 lo = splits::floats_of(first->lower), hi = splits::floats_of(first->upper);
     for (; first != last; ++first, ++area) {
-      lo = splits::least(lo, splits::floats_of(first->lower)), hi = splits::most(hi, splits::floats_of(first->upper));
+      lo = splits::least(lo, splits::floats_of(first->lower));
+      hi = splits::most(hi, splits::floats_of(first->upper));
       const vec3 d = hi - lo;
       *area = d.x * d.y + d.y * d.z + d.z * d.x;
     }

@@ -18,15 +18,18 @@ CLEARANCE_HD inline double certain_distance(real distance, double slop, const fr
   return double(distance) - slop - error.at(distance);
 }
 
-/// So much farther than the nearest pair of all, in metres, may a part's nearest be and still decide what is certain:
-/// if so much more is taken from it than from the part of which `least` is taken. Rounding takes less than a third of a
-/// distance (`error_near`).
+/// By how much a part's nearest pair may be farther than the nearest pair of all, in metres, and still decide what is
+/// certain: `slop` is taken from the part's distance, and `least` is the least that is taken of any part. Rounding
+/// takes less than a third of a distance (`error_near`).
 CLEARANCE_HD inline real extra_reach(double slop, double least) { return rounded_up(1.51 * (slop - least)); }
-/// The same of all parts. Empty if the nearest pair decides: if the same is taken from every part, or if some part has
-/// no certificate, and so nothing is certain.
+/// `extra_reach` of all parts. Empty if the nearest pair decides: if the same is taken from every part, or if some part
+/// has no certificate, and so nothing is certain.
 inline void extra_reaches(std::span<const part_facts> facts, std::vector<real>& extra) {
   double least = infinity, most = 0;
-  for (const part_facts& f : facts) least = std::min(least, frames::slop(f)), most = std::max(most, frames::slop(f));
+  for (const part_facts& f : facts) {
+    least = std::min(least, frames::slop(f));
+    most = std::max(most, frames::slop(f));
+  }
   extra.clear();
   if (!(least < most && most < infinity)) return;
   for (const part_facts& f : facts) extra.push_back(extra_reach(frames::slop(f), least));
@@ -49,8 +52,8 @@ CLEARANCE_HD double certain_distance(std::uint32_t parts, Distance distance, Fac
                                      const frames::float_error& error) {
   double least = infinity;
   for (std::uint32_t k = 0; k < parts; ++k) {
-    const double its = certain_distance(distance(k), frames::slop(facts(k)), error);
-    least = its < least ? its : least;
+    const double lower = certain_distance(distance(k), frames::slop(facts(k)), error);
+    least = lower < least ? lower : least;
   }
   return least;
 }
@@ -72,8 +75,10 @@ CLEARANCE_HD inline void bracket(min_distance_result& r, double lower, real tole
 /// Something nearer than a sensor can measure may be anywhere in front of it, so nothing is free then. Call it after
 /// counts and bracket.
 CLEARANCE_HD inline void allow_for_too_close(min_distance_result& r) {
-  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free)
-    r.state = clearance::state::possible, r.lower = 0;
+  if (r.dropped[int(drop_reason::too_close)] != 0 && r.state == clearance::state::free) {
+    r.state = clearance::state::possible;
+    r.lower = 0;
+  }
 }
 
 }  // namespace clearance::frames
@@ -96,15 +101,15 @@ class part_slops {
 
   double* data() { return own().data(); }
   void resize(std::size_t parts) { own().resize(parts); }
-  /// Those of these parts; written only if they have changed.
+  /// Becomes the slops of these parts; writes them only if they have changed.
   const part_slops& of(std::span<const part_facts> facts) {
-    const auto its = [](const part_facts& f) { return frames::slop(f); };
-    if (std::ranges::equal(*this, facts, {}, {}, its)) return *this;
+    const auto slop_of = [](const part_facts& f) { return frames::slop(f); };
+    if (std::ranges::equal(*this, facts, {}, {}, slop_of)) return *this;
     resize(facts.size());
-    std::ranges::transform(facts, data(), its);
+    std::ranges::transform(facts, data(), slop_of);
     return *this;
   }
-  /// Covers the other's, too.
+  /// Covers the other's slops, too.
   void widen(const part_slops& other) {
     if (*this == other) return;
     resize(std::max(size(), other.size()));
@@ -124,13 +129,13 @@ class part_slops {
 /// part may be nearer than its primitives (gap and tolerance). Metres.
 struct distance_certainty {
   frames::float_error error;
-  double slop = 0;        ///< The largest of all parts,
-  part_slops slops = {};  ///< and each part's own, where the answer is about each.
+  double slop = 0;        ///< The largest slop of all parts.
+  part_slops slops = {};  ///< Each part's own slop, if the answer is about each part.
 
   /// The solid is at least this far away, whichever part the distance is of; 0 if nothing more is certain, or if the
   /// distance is infinite or NaN.
   real lower(real distance) const { return at_least(distance, slop); }
-  /// The same of a distance that is this part's, or a pair's: less only what that part may be nearer.
+  /// The solid of one part is at least this far away: only what that part may be nearer is taken from its distance.
   real lower(real distance, std::size_t part) const {
     return at_least(distance, part < slops.size() ? slops[part] : slop);
   }
@@ -166,11 +171,12 @@ CLEARANCE_HD inline void beyond(min_distance_result& r, real d_max, double slop,
   r.state = r.lower > 0 ? state::free : state::possible;
   allow_for_too_close(r);
 }
-/// Changes a whole result as if its search had stopped at `d_max`.
+/// Changes a complete result as if its search had stopped at `d_max`.
 CLEARANCE_HD inline void cut(min_distance_result& r, real d_max, double slop, const frames::float_error& error) {
   if (r.part == none || r.distance <= d_max) return;
   min_distance_result none_within;
-  none_within.seen = r.seen, none_within.valid = r.valid;
+  none_within.seen = r.seen;
+  none_within.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) none_within.dropped[k] = r.dropped[k];
   r = none_within;
   beyond(r, d_max, slop, error);

@@ -79,14 +79,14 @@ concept clouds_of_any_kind = detail::is_cloud<T>::value;
 /// Calls `f(source, pose)` for each cloud, in order.
 template <clouds_of_any_kind Clouds, class F>
 void for_each_cloud(const Clouds& clouds, F&& f) {
-  static const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  static const Eigen::Isometry3d unmoved = Eigen::Isometry3d::Identity();
   if constexpr (point_source<Clouds>) {
-    f(detail::read_here(clouds), here);
+    f(detail::read_here(clouds), unmoved);
   } else if constexpr (requires { clouds.source, clouds.pose; }) {
     f(detail::read_here(clouds.source), clouds.pose);
   } else if constexpr (point_container<Clouds>) {
     const auto source = points_of(clouds);
-    f(detail::read_here(source), here);
+    f(detail::read_here(source), unmoved);
   } else if constexpr (requires { std::tuple_size<Clouds>::value; }) {
     std::apply([&](const auto&... each) { (for_each_cloud(each, f), ...); }, clouds);
   } else if constexpr (requires { std::variant_size<Clouds>::value; }) {
@@ -154,7 +154,7 @@ template <template <class...> class Many, class... T>
 consteval bool detail::explain_each(std::type_identity<Many<T...>>) {
   return (explain_clouds<T>() && ...);
 }
-/// The same for everything that a call is given as clouds.
+/// `explain_clouds` of everything that a call is given as clouds: one argument, or a source and its pose.
 template <class First, class... Rest>
 consteval bool explain_given() {
   constexpr bool fits = sizeof...(Rest) == 0 ||
@@ -216,7 +216,8 @@ std::uint64_t for_each_turn(cloud_frame& frame, std::span<const part_facts> fact
       throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
     frame.put(facts, pose, cloud, rounding_of(source));
     f(source, turn{cloud, std::uint32_t(points), cloud + 1 >= count});
-    ++cloud, points += size;
+    ++cloud;
+    points += size;
   };
   if (count == 0) next(point_span{}, Eigen::Isometry3d::Identity());
   for_each_cloud(clouds, next);

@@ -49,10 +49,10 @@ CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_err
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
   if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0))
     return {double(infinity), unit_error};
-  const double here = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
-  if (off.relative <= source_share) return {here, unit_error};
+  const double at_zero = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
+  if (off.relative <= source_share) return {at_zero, unit_error};
   const double more = off.relative - source_share;
-  return {fma(more, extent, here) / (1 - more),
+  return {fma(more, extent, at_zero) / (1 - more),
           (unit_error + more) / (1 - more)};  // the error depends on the true distance; this is by the computed one
 }
 
@@ -84,7 +84,9 @@ CLEARANCE_HD inline placement place(const part_facts& facts, const world_transfo
   const world_transform part_from_world = world_from_part.inverse();
   world_transform part_from_cloud = part_from_world * world_from_cloud;
   const position start = part_from_world(world_from_cloud(origin));
-  part_from_cloud.m[0][3] = start.x, part_from_cloud.m[1][3] = start.y, part_from_cloud.m[2][3] = start.z;
+  part_from_cloud.m[0][3] = start.x;
+  part_from_cloud.m[1][3] = start.y;
+  part_from_cloud.m[2][3] = start.z;
   const position center = part_from_cloud.inverse()(facts.center);
   const double radius = facts.radius >= 0 ? facts.radius : infinity;
   const double extent = norm({facts.center.x, facts.center.y, facts.center.z}) + radius + norm(start);
@@ -116,9 +118,9 @@ struct frame_facts {
       : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre} {}
 
   CLEARANCE_HD void add(const part_facts& facts, real error_of_part) {
-    const double its = frames::slop(facts);
+    const double slop_of_part = frames::slop(facts);
     error.widen({error_of_part});
-    slop = its > slop ? its : slop;
+    slop = slop_of_part > slop ? slop_of_part : slop;
   }
 };
 
@@ -131,7 +133,8 @@ class cloud_frame : public frame_facts {
   cloud_frame() = default;
   cloud_frame(std::span<const part_facts> facts, std::span<const Eigen::Isometry3d> parts,
               const Eigen::Isometry3d& cloud, const position_error& off = {}) {
-    start(facts, parts), put(facts, cloud, 0, off);
+    start(facts, parts);
+    put(facts, cloud, 0, off);
   }
 
   /// Begins a frame with poses world-from-part. Throws std::invalid_argument if their number is wrong or one is not
@@ -141,7 +144,8 @@ class cloud_frame : public frame_facts {
       throw std::invalid_argument("clearance: there are " + std::to_string(facts.size()) + " parts, but " +
                                   std::to_string(parts.size()) + " poses");
     with_vectors([&] {
-      error = {}, slop = 0;
+      error = {};
+      slop = 0;
       poses.clear();
       for (std::size_t k = 0; k < parts.size(); ++k)
         poses.push_back(rigid_transform_of(parts[k], "part", std::int64_t(k)));

@@ -16,9 +16,9 @@ struct mapped {
   using one = mapped<std::remove_cvref_t<decltype(*std::begin(std::declval<const T&>()))>, F>;
   using type = std::vector<typename one::type>;
   static type of(const T& clouds, F& f) {
-    type all;
-    for (const auto& cloud : clouds) all.push_back(one::of(cloud, f));
-    return all;
+    type sources;
+    for (const auto& cloud : clouds) sources.push_back(one::of(cloud, f));
+    return sources;
   }
 };
 template <point_source S, class F>
@@ -80,8 +80,8 @@ concept owning_clouds = keeps_points<T>;
 
 }  // namespace detail
 
-/// The same clouds (any that a call takes) with `f(source)` for each source, in order. They are views: what they view
-/// must outlive them. `F` must not be a lambda, because its name becomes part of a kernel's.
+/// Clouds (any that a call takes) with `f(source)` in the place of each source, in order. They are views: what they
+/// view must outlive them. `F` must not be a lambda, because its name becomes part of a kernel's.
 template <class Clouds, class F>
 auto mapped_clouds(const Clouds& clouds, F f) {
   static_assert(explain_clouds<Clouds>());
@@ -97,15 +97,15 @@ struct behind_labels {
 
   template <point_source S>
   masked<S> operator()(const S& source) {
-    const point_label* const its = labels;
+    const point_label* const first = labels;
     labels += source.size();
-    return {source, its};
+    return {source, first};
   }
 };
 
 }  // namespace detail
 
-/// The same clouds (any that a call takes) without the points labelled `own`. `labels` has one label per point of all
+/// Clouds (any that a call takes) without the points labelled `own`. `labels` has one label per point of all
 /// clouds, in order, in memory that the query's backend can read. Views: clouds and labels must outlive them.
 template <class Clouds>
 auto masked_clouds(const Clouds& clouds, const point_label* labels) {

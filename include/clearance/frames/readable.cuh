@@ -16,11 +16,11 @@ class kept_copies {
   template <point_source S>
   S operator()(const S& source, std::uint32_t cloud) {
     if (copies_.size() <= cloud) copies_.resize(cloud + 1);
-    auto& its = copies_[cloud];
+    auto& copies = copies_[cloud];
     return over_copies(source, [&](std::span<const std::byte> bytes, std::uint32_t piece) -> const std::byte* {
       if (on_.holds(bytes.data())) return bytes.data();
-      if (its.size() <= piece) its.resize(piece + 1);
-      device_buffer<std::byte>& copy = its[piece];
+      if (copies.size() <= piece) copies.resize(piece + 1);
+      device_buffer<std::byte>& copy = copies[piece];
       if (copy.size() < bytes.size()) copy = device_buffer<std::byte>(bytes.size(), on_.id, memory_);
       const device_guard guard(on_.id);
       check_cuda(cudaMemcpyAsync(copy.data(), bytes.data(), bytes.size(), cudaMemcpyDefault, on_.stream),
@@ -32,13 +32,13 @@ class kept_copies {
  private:
   device on_;
   std::pmr::memory_resource* memory_;
-  std::vector<std::vector<device_buffer<std::byte>>> copies_;  ///< Of each cloud, of each of its pieces.
+  std::vector<std::vector<device_buffer<std::byte>>> copies_;  ///< By cloud, then by piece.
 };
 
 template <>
 class readable_clouds<device> {
  public:
-  /// Not private: its name becomes part of a kernel's.
+  /// It is not private, because its name becomes part of a kernel's name.
   struct to_copies {
     kept_copies* copies;
     std::uint32_t cloud = 0;

@@ -41,10 +41,10 @@ S over_copies(const S& source, const Copy& copy) {
   const auto one = [&](const auto& piece, const auto& again) {
     if constexpr (copied_memory<std::remove_cvref_t<decltype(piece)>>) {
       const std::span<const std::byte> bytes = piece.bytes();
-      const std::byte* const there = piece.size() == 0 || bytes.empty() ? bytes.data() : copy(bytes, n++);
-      return there == bytes.data() ? piece : piece.at(there);
+      const std::byte* const readable = piece.size() == 0 || bytes.empty() ? bytes.data() : copy(bytes, n++);
+      return readable == bytes.data() ? piece : piece.at(readable);
     } else if constexpr (source_in_pieces<std::remove_cvref_t<decltype(piece)>>) {
-      return piece.with_pieces([&](const auto& its) { return again(its, again); });
+      return piece.with_pieces([&](const auto& part) { return again(part, again); });
     } else {
       return piece;
     }
@@ -80,7 +80,7 @@ class readable_clouds {
  public:
   explicit readable_clouds(const On& on) : on_(on) {}
 
-  /// The same clouds, in copies if `On` cannot read them where they are. Copies stay until the next call.
+  /// The clouds themselves, or copies if `On` cannot read them where they are. Copies stay until the next call.
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds) {
     if constexpr (std::is_same_v<On, host>) {

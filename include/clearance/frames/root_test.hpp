@@ -16,7 +16,7 @@ CLEARANCE_HD inline bool may_reach(const ball& around, real reach, vec3 p) {
   return most >= 0 && d.x * d.x + d.y * d.y + d.z * d.z <= most * most;
 }
 
-/// The same for anything in a capsule.
+/// May anything in a capsule be within reach of a ball?
 CLEARANCE_HD inline bool may_reach(const ball& around, real reach, const capsule& c) {
   return may_reach({{0, 0, 0}, around.radius}, reach + c.radius + detail::noise_along(c),
                    detail::rough_way(c, around.center));
@@ -58,8 +58,11 @@ struct sight_test {
         square(dot(from, from) * (1 - margin)),
         away_square(dot(away, away)),
         along(dot(from, away)) {
-    if (!(256 * away_square >= dot(origin, origin) && away_square >= least_normal))
-      away = {0, 0, 0}, away_square = 0, along = from.x == from.x ? -infinity : not_a_number;
+    if (!(256 * away_square >= dot(origin, origin) && away_square >= least_normal)) {
+      away = {0, 0, 0};
+      away_square = 0;
+      along = from.x == from.x ? -infinity : not_a_number;
+    }
   }
   static constexpr real margin = 0x1p-16f;  ///< More than rounding changes in a square, as a share of all squares.
 };

@@ -102,8 +102,8 @@ CLEARANCE_HD inline real rough_root(real a) {
   return square_root(a);
 #endif
 }
-/// The same for loops that should become vector code, which a host's root, with its error for negative numbers,
-/// forbids.
+/// The square root for loops that should become vector code. A host's own root reports negative numbers as errors,
+/// which forbids that.
 CLEARANCE_HD inline real looped_root(real a) {
 #if defined(__CUDA_ARCH__)
   return rough_root(a);
@@ -131,7 +131,7 @@ CLEARANCE_HD inline vec3 cross(vec3 a, vec3 b) {
 
 CLEARANCE_HD constexpr real min(real a, real b) { return b < a ? b : a; }
 CLEARANCE_HD constexpr real max(real a, real b) { return a < b ? b : a; }
-/// The same for bounds, in one instruction on a device, which returns the number if the other is NaN.
+/// The smaller number, for bounds: in one instruction on a device, which returns the number if the other is NaN.
 CLEARANCE_HD inline real rough_min(real a, real b) {
 #if defined(__CUDA_ARCH__)
   return fminf(a, b);
@@ -204,7 +204,7 @@ CLEARANCE_HD constexpr real lowered(real distance, real size) { return distance 
 
 /// max(a, 0), but NaN for minus infinity. For loops where compilers would turn max into branches.
 CLEARANCE_HD constexpr real positive_part(real a) { return (a + absolute(a)) * 0.5f; }
-/// The same for finite numbers, in one instruction on a device.
+/// `positive_part` of a finite number, in one instruction on a device.
 CLEARANCE_HD inline real rough_positive(real a) {
 #if defined(__CUDA_ARCH__)
   return rough_max(a, 0);

@@ -115,7 +115,8 @@ CLEARANCE_HD inline bool make_rigid(world_transform& t) {
 
 namespace detail {
 
-/// It is apart and cold, because callers are compiled for several processors with all that they call.
+/// Throws std::invalid_argument, and says what is wrong with the pose. It is apart and cold, because callers are
+/// compiled for several processors with all that they call.
 [[noreturn, gnu::noinline, gnu::cold]] inline void refuse_pose(const Eigen::Isometry3d& pose, const world_transform& t,
                                                                const char* what, std::int64_t number) {
   bool finite = true;

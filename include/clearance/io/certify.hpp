@@ -45,7 +45,9 @@ struct certified_spheres {
 template <solid S>
 certified_spheres certify(const S& s, packing spheres, double gap_tolerance = 0.01) {
   const gap_report gap = measure_gap(s, std::span<const inner_sphere>(spheres.spheres), gap_tolerance);
-  spheres.gap = gap.certified, spheres.gap_mean = gap.mean, spheres.gap_p95 = gap.p95;
+  spheres.gap = gap.certified;
+  spheres.gap_mean = gap.mean;
+  spheres.gap_p95 = gap.p95;
   spheres.fill = spheres.tolerance = 0;
   if constexpr (requires { s.tolerance(); }) spheres.tolerance = s.tolerance();
   if constexpr (requires { s.volume(); })

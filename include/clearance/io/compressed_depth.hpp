@@ -25,11 +25,12 @@ struct compressed_format {
   bool in_metres = false, rvl = false, headed = false;
 };
 
-/// Of "16UC1; compressedDepth", "32FC1; compressedDepth rvl", "16UC1; png compressed " and the like; no value for a
-/// picture. A picture's bytes are no depth, whatever its topic.
+/// Reads a message's `format`: "16UC1; compressedDepth", "32FC1; compressedDepth rvl", "16UC1; png compressed " and the
+/// like; no value for a picture. A picture's bytes are no depth, whatever its topic.
 std::optional<compressed_format> depth_format(std::string_view format);
 
-/// Reads it; `file` is its name in errors. Throws std::runtime_error for a picture, and for what is damaged.
+/// Reads a compressed depth image; `file` is its name in errors. Throws std::runtime_error for a picture, and for what
+/// is damaged.
 compressed_depth read_compressed_depth(std::string_view format, std::string_view bytes, const std::string& file,
                                        const read_limits& limits = {});
 

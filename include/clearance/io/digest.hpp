@@ -23,7 +23,10 @@ struct digest {
 
   std::string hex() const {
     std::string text;
-    for (const std::uint8_t b : bytes) text += "0123456789abcdef"[b >> 4], text += "0123456789abcdef"[b & 15];
+    for (const std::uint8_t b : bytes) {
+      text += "0123456789abcdef"[b >> 4];
+      text += "0123456789abcdef"[b & 15];
+    }
     return text;
   }
 };

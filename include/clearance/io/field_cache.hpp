@@ -40,7 +40,11 @@ void put_values(byte_writer& out, std::span<const T> values) {
   for (const std::uint8_t byte : digest_of({reinterpret_cast<const char*>(values.data()), values.size_bytes()}).bytes)
     out.put(byte);
 }
-inline void put_values(byte_writer& out, vec3 v) { out.put(v.x), out.put(v.y), out.put(v.z); }
+inline void put_values(byte_writer& out, vec3 v) {
+  out.put(v.x);
+  out.put(v.y);
+  out.put(v.z);
+}
 
 inline void put_interior(byte_writer& out, const no_interior&) { out.put(std::uint32_t(0)); }
 inline void put_interior(byte_writer& out, const winding<>& solid) {
@@ -49,17 +53,31 @@ inline void put_interior(byte_writer& out, const winding<>& solid) {
   out.put(std::uint32_t(1));
   put_values(out, std::span<const crossing_triangle<real>>(triangles));
   for (const auto* numbers : {&cells, &lists, &enclosed}) put_values(out, std::span<const std::uint32_t>(*numbers));
-  for (int k = 0; k < 3; ++k) out.put(grid.low[k]), out.put(grid.high[k]);
-  out.put(grid.per_y), out.put(grid.per_z), out.put(grid.columns), out.put(grid.rows);
+  for (int k = 0; k < 3; ++k) {
+    out.put(grid.low[k]);
+    out.put(grid.high[k]);
+  }
+  out.put(grid.per_y);
+  out.put(grid.per_z);
+  out.put(grid.columns);
+  out.put(grid.rows);
 }
 
 inline void put_shape(byte_writer& out, const field_view& shape) {
   const auto& [cells, around, center, half, thickness, grids] = shape;
   static_cast<void>(cells);
-  put_values(out, around.center), out.put(around.radius), put_values(out, center), put_values(out, half);
+  put_values(out, around.center);
+  out.put(around.radius);
+  put_values(out, center);
+  put_values(out, half);
   out.put(thickness);
   for (const auto& [low, step, inverse, least, unit, error, size, first] : grids) {
-    put_values(out, low), out.put(step), put_values(out, inverse), out.put(least), out.put(unit), out.put(error);
+    put_values(out, low);
+    out.put(step);
+    put_values(out, inverse);
+    out.put(least);
+    out.put(unit);
+    out.put(error);
     for (const std::uint32_t along : size) out.put(along);
     out.put(first);
   }
@@ -87,7 +105,8 @@ digest field_key(const Part& part, const field_view& shape) {
   detail::put_values(out, std::span(part.tree.primitives));
   detail::put_interior(out, part.interior);
   detail::put_values(out, part.facts.center);
-  out.put(part.facts.radius), out.put(part.facts.tolerance);
+  out.put(part.facts.radius);
+  out.put(part.facts.tolerance);
   detail::put_shape(out, shape);
   return digest_of(out.bytes());
 }
@@ -96,7 +115,7 @@ namespace detail {
 
 static_assert(sizeof(field_cell) == 8);
 
-/// As they are in a file: least byte first.
+/// Swaps the bytes of values, if need be, to the order of a file: least byte first.
 inline void swap_on_big_endian(std::span<field_cell> cells) {
   if constexpr (std::endian::native == std::endian::big)
     for (field_cell& c : cells) c.value = std::uint16_t(c.value << 8 | c.value >> 8);
@@ -218,8 +237,8 @@ class field_cache {
   template <class Part>
   static std::pair<digest, std::optional<field<host>>> of(const Part& part, const field_options& options) {
     std::string why_not;
-    auto its = clearance::detail::field_of(part, options, why_not);
-    return {its ? field_key(part, its->shape) : digest{}, std::move(its)};
+    auto unfilled = clearance::detail::field_of(part, options, why_not);
+    return {unfilled ? field_key(part, unfilled->shape) : digest{}, std::move(unfilled)};
   }
 
   kept_files files_;
@@ -238,7 +257,10 @@ cached_fields<model<Part>> with_fields_cached(const B& on, model<Part> robot, co
                                               const field_cache& cache) {
   std::size_t found = 0;
   auto made = clearance::detail::fielded_by(std::move(robot), [&](const Part& part, std::string& why_not) {
-    if (field<host> kept = cache.find(part, options); !kept.empty()) return ++found, kept;
+    if (field<host> kept = cache.find(part, options); !kept.empty()) {
+      ++found;
+      return kept;
+    }
     field<host> fresh = clearance::detail::sampled_field(on, part, options, why_not);
     cache.keep(part, fresh);
     return fresh;

@@ -21,6 +21,7 @@ triangle_mesh hidden_mesh(const depth_image<Pixel>& image, const hiding& room, s
   const auto blocks = [&](std::uint32_t pixels) { return (pixels + step - 1) / step; };
   while (std::size_t(blocks(image.width)) * blocks(image.height) > most) ++step;
   const std::uint32_t width = blocks(image.width), height = blocks(image.height);
+
   const double farthest = room.farthest;
   std::vector<double> from(std::size_t(width) * height, farthest);  // where each block's room begins
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -29,6 +30,7 @@ triangle_mesh hidden_mesh(const depth_image<Pixel>& image, const hiding& room, s
     if (const sample s = source[i]; s.valid())
       from[v * width + u] = std::min(from[v * width + u], double(s.position.z));
   }
+
   const auto begin = [&](std::int64_t u, std::int64_t v) {  // beside the image nothing is drawn
     return u < 0 || v < 0 || u >= width || v >= height ? farthest : from[std::size_t(v) * width + std::size_t(u)];
   };
@@ -37,16 +39,19 @@ triangle_mesh hidden_mesh(const depth_image<Pixel>& image, const hiding& room, s
                  y = std::min<double>(double(v * step), image.height) - 0.5 - double(image.cy);
     return Eigen::Vector3d(x * double(image.inverse_fx) * z, y * double(image.inverse_fy) * z, z);
   };
+
   triangle_mesh mesh;
   const auto wall = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                         const Eigen::Vector3d& d) {
     const auto first = std::uint32_t(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
-    mesh.triangles.push_back({first, first + 1, first + 2}), mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
   };
-  const auto between = [&](double here, double there, const auto& at) {  // of two blocks, at their common edge
-    if (here != there) wall(at(0, here), at(1, here), at(1, there), at(0, there));
+  const auto between = [&](double z, double beside, const auto& at) {  // of two blocks, at their common edge
+    if (z != beside) wall(at(0, z), at(1, z), at(1, beside), at(0, beside));
   };
+
   for (std::int64_t v = 0; v <= height; ++v)
     for (std::int64_t u = 0; u <= width; ++u) {
       const double z = begin(u, v);

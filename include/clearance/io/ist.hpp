@@ -24,8 +24,14 @@ template <class Packing, class Visit>
 void for_each_member(Packing& p, Visit visit) {
   auto& [spheres, gap, tolerance, gap_mean, gap_p95, fill, radius_min, radius_max, room, stopped_by, seconds] = p;
   static_cast<void>(tolerance);  // is written with the part
-  visit(gap), visit(gap_mean), visit(gap_p95), visit(fill), visit(radius_min), visit(radius_max), visit(room),
-      visit(seconds);
+  visit(gap);
+  visit(gap_mean);
+  visit(gap_p95);
+  visit(fill);
+  visit(radius_min);
+  visit(radius_max);
+  visit(room);
+  visit(seconds);
   visit(stopped_by);
   visit(spheres);
 }

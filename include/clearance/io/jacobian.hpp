@@ -29,8 +29,8 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const kinematic_tree& tree,
 std::optional<Eigen::VectorXd> joint_gradient(const kinematic_tree& tree, std::span<const Eigen::Isometry3d> link_poses,
                                               std::size_t link, const pose_gradient& g);
 
-/// The same for a part of a robot in configuration `q`, whose base is at `base`. Throws as kinematic_tree::link_poses,
-/// or if there is no such part.
+/// `joint_gradient` for a part of a robot in configuration `q`, whose base is at `base`. Throws as
+/// kinematic_tree::link_poses, or if there is no such part.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().link_poses({}), r.parts()[0].link; }
 std::optional<Eigen::VectorXd> joint_gradient(const Robot& robot, std::span<const double> q, std::uint32_t part,

@@ -16,7 +16,7 @@ namespace clearance::io {
 joint_chain<> joint_chain_of(const kinematic_tree& tree, std::span<const std::size_t> links, joint_options options = {},
                              const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity());
 
-/// The same for a robot with its parts.
+/// `joint_chain_of` a robot, whose parts name their links.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
 joint_chain<> joint_chain_of(const Robot& robot, joint_options options = {},

@@ -22,7 +22,7 @@ class joint_motion {
                const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity());
   template <class... Any>
   joint_motion(const kinematic_tree&&, const Any&...) = delete;  // the tree would be gone when it is asked; name it
-  /// The same for a robot with its parts.
+  /// The motion of a robot, whose parts name their links.
   template <class Robot>
     requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
   joint_motion(const Robot& robot, std::span<const double> from, std::span<const double> to, joint_options options = {},
@@ -38,9 +38,9 @@ class joint_motion {
  private:
   template <class Robot>
   static std::vector<std::size_t> links_of(const Robot& robot) {
-    std::vector<std::size_t> all;
-    for (const auto& part : robot.parts()) all.push_back(part.link);
-    return all;
+    std::vector<std::size_t> links;
+    for (const auto& part : robot.parts()) links.push_back(part.link);
+    return links;
   }
 
   /// Goes up the chain, joint by joint. For each joint: how far the solid is from its axis now, how far it can ever be

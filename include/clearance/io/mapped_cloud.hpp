@@ -45,7 +45,7 @@ template <point_source S>
 struct mapped_cloud {
   std::shared_ptr<const mapped_file> file;
   S source;
-  std::optional<io::viewpoint> viewpoint = {};  ///< Of a PCD file.
+  std::optional<io::viewpoint> viewpoint = {};  ///< Where the sensor was, if a PCD file says so.
 
   std::size_t size() const { return source.size(); }
   std::size_t bytes_for(std::size_t) const { return 0; }
@@ -75,13 +75,13 @@ mapped_cloud<strided_points<Scalar>> records_of(const std::shared_ptr<const mapp
       refuse(file, "a coordinate at byte " + std::to_string(offset) + " of records of " + std::to_string(layout.step) +
                        " bytes");
   if (layout.width != 0) refuse(file, "records in padded rows cannot be mapped");
-  const std::size_t there = bytes < header ? 0 : (bytes - header) / layout.step;
+  const std::size_t held = bytes < header ? 0 : (bytes - header) / layout.step;
   if (layout.count == 0 && (bytes < header || (bytes - header) % layout.step != 0))
     refuse(file, "ends in the middle of a record of " + std::to_string(layout.step) + " bytes: it has " +
                      std::to_string(bytes) + " bytes, " + std::to_string(header) + " of them before the first");
-  if (layout.count > there)
-    refuse(file, "has " + std::to_string(there) + " records, not " + std::to_string(layout.count));
-  if (layout.count == 0) layout.count = there;
+  if (layout.count > held)
+    refuse(file, "has " + std::to_string(held) + " records, not " + std::to_string(layout.count));
+  if (layout.count == 0) layout.count = held;
   layout.data = mapped->bytes().data() + header;
   return {mapped, layout, {}};
 }
@@ -116,7 +116,8 @@ mapped_cloud<strided_points<Scalar>> map_pcd(const std::string& file) {
   const detail::pcd_layout at = detail::pcd_layout_of(file, sizeof(Scalar));
   strided_points<Scalar> layout;
   for (int axis = 0; axis < 3; ++axis) layout.offset[axis] = at.offset[axis];
-  layout.step = at.step, layout.count = at.count;
+  layout.step = at.step;
+  layout.count = at.count;
   mapped_cloud<strided_points<Scalar>> made = detail::records_of(at.file, layout, at.before);
   made.viewpoint = at.viewpoint;
   return made;

@@ -20,9 +20,9 @@ enum class gltf_axis { y, z };
 /// A mesh file's triangles, and what was assumed about it.
 struct loaded_mesh {
   triangle_mesh mesh;
-  std::string format;                ///< As mesh_format.
-  std::uint64_t bytes = 0;           ///< Read, of this file and of those that it names.
-  std::vector<std::string> notes{};  ///< To go on after the file's name: "has ...".
+  std::string format;                ///< The format's name, as `mesh_format` gives it.
+  std::uint64_t bytes = 0;           ///< Bytes read, of this file and of those that it names.
+  std::vector<std::string> notes{};  ///< Each continues the file's name: "has ...".
 
   bool is_gltf() const { return format == "glb" || format == "gltf"; }
 };

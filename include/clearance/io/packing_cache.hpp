@@ -56,7 +56,7 @@ struct cached_packing {
   bool found = false;  ///< Taken from the cache; `pack` did not run.
 };
 
-/// Packs one solid; empty: `pack` on the host.
+/// A function that packs one solid; if it is empty, `pack` on the host does.
 using pack_by = std::function<packing(const mesh_solid&, const pack_options&)>;
 
 /// Calls `make(mesh_solid(mesh), options)` once per mesh and options. Afterwards the packing comes from the cache, the
@@ -65,8 +65,8 @@ using pack_by = std::function<packing(const mesh_solid&, const pack_options&)>;
 cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache,
                            std::string_view maker = "host", const pack_by& make = {});
 
-/// The same for several closed meshes, side by side as by `pack`; each is kept as soon as it is done. Several threads
-/// call `make` at once.
+/// `pack_cached` of several closed meshes, side by side as by `pack`; each packing is kept as soon as it is done.
+/// Several threads call `make` at once.
 std::vector<cached_packing> pack_cached(std::span<const closed_mesh* const> meshes, const pack_options& options,
                                         const packing_cache& cache, std::string_view maker = "host",
                                         const pack_by& make = {});
@@ -75,9 +75,9 @@ template <std::ranges::random_access_range R>
            std::is_lvalue_reference_v<std::ranges::range_reference_t<const R>>
 std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache,
                                         std::string_view maker = "host", const pack_by& make = {}) {
-  std::vector<const closed_mesh*> all;
-  for (const closed_mesh& mesh : meshes) all.push_back(&mesh);
-  return pack_cached(std::span<const closed_mesh* const>(all), options, cache, maker, make);
+  std::vector<const closed_mesh*> given;
+  for (const closed_mesh& mesh : meshes) given.push_back(&mesh);
+  return pack_cached(std::span<const closed_mesh* const>(given), options, cache, maker, make);
 }
 
 }  // namespace clearance::io

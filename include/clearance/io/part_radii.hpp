@@ -27,7 +27,7 @@ std::vector<part_radius> part_radii(const kinematic_tree& tree, std::span<const 
                                     std::span<const part_facts> facts, std::span<const double> q,
                                     const joint_uncertainty& of, joint_options options = {});
 
-/// The same for a robot with its parts.
+/// `part_radii` of a robot, whose parts name their links.
 template <class Robot>
   requires requires(const Robot& r) { r.kinematics().joints(), r.parts()[0].link; }
 std::vector<part_radius> part_radii(const Robot& robot, std::span<const part_facts> facts, std::span<const double> q,

@@ -29,7 +29,8 @@ struct ply_piece {
   std::vector<ply_column> columns;
 };
 
-/// A PLY file, binary and little-endian. Throws std::invalid_argument as the two above.
+/// A PLY file, binary and little-endian. Throws std::invalid_argument for a column whose name is not a word, or that
+/// has not one value per point.
 std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns,
                       const std::string& comment = {});
 
@@ -37,9 +38,9 @@ std::string ply_bytes(std::span<const Eigen::Vector3d> points, std::span<const p
 void save_ply(const std::string& file, std::span<const Eigen::Vector3d> points, std::span<const ply_column> columns,
               const std::string& comment = {});
 
-/// The same for `count` points that need not be in memory at once. `next()` returns a ply_piece; it is called at least
-/// once, and until no point is missing. All pieces have the same column names and kinds. Throws std::invalid_argument
-/// if a piece is empty while points are missing, or has too many.
+/// As save_ply, for `count` points that need not be in memory at once. `next()` returns a ply_piece; it is called at
+/// least once, and until no point is missing. All pieces have the same column names and kinds. Throws
+/// std::invalid_argument if a piece is empty while points are missing, or has too many.
 void save_ply_pieces(const std::string& file, std::size_t count, const std::function<ply_piece()>& next,
                      const std::string& comment = {});
 

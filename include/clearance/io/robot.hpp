@@ -44,15 +44,16 @@ struct robot_part {
 
 // Joints that follow others by <mimic>, where somebody says their own values: a value that is said wins.
 
-/// Those of `names` that are joints of the tree that follow others.
+/// The `names` of joints of the tree that follow others.
 std::vector<std::string> followers_among(const kinematic_tree& tree, const std::vector<std::string>& names);
 
-/// The same tree, in which these joints follow no other: each has a value of its own in a configuration, at its place
-/// in the order of joints, within its own limits. What follows them goes on to. As robot_state_publisher has it, where
-/// the published value of such a joint wins. Throws std::invalid_argument for a name of no joint that follows another.
+/// A copy of the tree in which the named joints follow no other: each has a value of its own in a configuration, at its
+/// place in the order of joints, within its own limits. What follows them goes on to. As robot_state_publisher has it,
+/// where the published value of such a joint wins. Throws std::invalid_argument for a name of no joint that follows
+/// another.
 kinematic_tree freed(const kinematic_tree& tree, const std::vector<std::string>& names);
 
-/// What to tell a user of it.
+/// The sentence that tells a user of a freed joint.
 std::string note_on_freed(const kinematic_tree& tree, const std::string& name);
 
 /// The rigid parts of a robot description and how they move. The base link is at the origin.
@@ -67,7 +68,7 @@ class robot {
   /// Sentences to show to a user, for example that a link without collision geometry uses its visual.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// These joints follow no other any more: see `freed`.
+  /// Makes joints follow no other any more: see `freed`.
   void free_joints(const std::vector<std::string>& names) { tree_ = freed(tree_, names); }
 
   /// base-from-part for each part; see kinematic_tree::link_poses.

@@ -26,7 +26,7 @@ struct body_source {
   std::string name;
   const triangle_mesh* mesh;
   double tolerance = 0;                ///< How far the true surface may be from the mesh, metres.
-  const packed_part* given = nullptr;  ///< Of a file: used if made for this mesh, else proven anew.
+  const packed_part* given = nullptr;  ///< Spheres of a file: used if made for this mesh, else proven anew.
 };
 
 struct body_options {
@@ -41,9 +41,9 @@ struct body_options {
 
 /// How the bodies got their spheres.
 struct body_account {
-  std::vector<bool> cached;  ///< By body: from the cache.
+  std::vector<bool> cached;  ///< For each body: did its spheres come from the cache?
   std::size_t packed = 0, from_cache = 0, certified = 0, proven = 0;
-  double largest_gap = 0, largest_excess = 0;  ///< Of those proven anew, metres.
+  double largest_gap = 0, largest_excess = 0;  ///< The largest of the spheres proven anew, metres.
   std::vector<std::string> notes = {};         ///< To show to the user.
 };
 

@@ -13,7 +13,7 @@
 namespace clearance::io {
 
 /// Reads spheres from a text file: an optional header x,y,z,r, then four numbers per line, metres; # begins a comment.
-/// They keep the file's order and have no certificate. Throws std::runtime_error naming file and line.
+/// The spheres keep the file's order and have no certificate. Throws std::runtime_error naming file and line.
 packing load_spheres_csv(const std::string& file);
 
 /// Saves x,y,z,r with every float exact; the certificate is lost.

@@ -18,7 +18,7 @@ class stamped_joints {
   /// What is known at a stamp.
   struct moment {
     std::vector<double> values;  ///< The configuration.
-    double off = 0;  ///< So many seconds from it is the nearest sample; 0 between two. Times the joints' speeds it is
+    double off = 0;  ///< Seconds from the stamp to the nearest sample; 0 between two. Times the joints' speeds it is
                      ///< what their values may be wrong by (`joint_uncertainty::delay`).
   };
 

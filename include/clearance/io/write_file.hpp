@@ -17,14 +17,14 @@ namespace clearance::io {
 /// status of the present file, if there is one.
 std::optional<struct ::stat> check_target(const std::string& file);
 
-/// The same as write_bytes, for what `next()` returns, until that is empty.
+/// As write_bytes, for the pieces that `next()` returns, until one is empty.
 void write_pieces(const std::string& file, const std::function<std::string()>& next);
 
 /// Replaces the file's content completely or not at all. The bytes go to a new file beside it, reach the disk, and then
 /// take its name and permissions. Throws std::runtime_error naming the file, which is then unchanged.
 void write_bytes(const std::string& file, std::string_view bytes);
 
-/// The same as check_target; also refuses a file that `inputs` has recorded.
+/// As check_target; also refuses a file that `inputs` has recorded.
 void check_output(const std::string& file, const files_read& inputs);
 
 }  // namespace clearance::io

@@ -29,10 +29,11 @@ inline void check(int error, const char* call) {
 /// All ranks' values, in order.
 template <class T>
 std::vector<T> gather(MPI_Comm comm, int ranks, const T* values, std::size_t count) {
-  std::vector<T> all(std::size_t(ranks) * count);
-  check(MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, all.data(), int(count * sizeof(T)), MPI_BYTE, comm),
-        "MPI_Allgather");
-  return all;
+  std::vector<T> gathered(std::size_t(ranks) * count);
+  check(
+      MPI_Allgather(values, int(count * sizeof(T)), MPI_BYTE, gathered.data(), int(count * sizeof(T)), MPI_BYTE, comm),
+      "MPI_Allgather");
+  return gathered;
 }
 
 /// One call that all ranks make together. Every rank does the same steps, whatever fails: an exception on one ends it
@@ -41,7 +42,8 @@ class together {
  public:
   explicit together(MPI_Comm comm) : comm_(comm) {
     int started = 0, ended = 0;
-    MPI_Initialized(&started), MPI_Finalized(&ended);
+    MPI_Initialized(&started);
+    MPI_Finalized(&ended);
     if (started == 0 || ended != 0 || comm == MPI_COMM_NULL)
       throw std::invalid_argument(
           "clearance: ranks, but MPI_Init was not called, or MPI_Finalize was, or there is no communicator");
@@ -55,9 +57,11 @@ class together {
     try {
       if (!thrown_) work();
     } catch (const std::exception& e) {
-      thrown_ = std::current_exception(), sentence_ = e.what();
+      thrown_ = std::current_exception();
+      sentence_ = e.what();
     } catch (...) {
-      thrown_ = std::current_exception(), sentence_ = "something that is no std::exception";
+      thrown_ = std::current_exception();
+      sentence_ = "something that is no std::exception";
     }
   }
 
@@ -70,32 +74,39 @@ class together {
     attempt([&] {
       for (const Eigen::Isometry3d& pose : poses) mine.add(pose);
       for_each_cloud(clouds, [&](const auto& cloud, const Eigen::Isometry3d& pose) {
-        sizes.push_back(cloud.size()), mine.add(pose);
+        sizes.push_back(cloud.size());
+        mine.add(pose);
       });
-      mine.clouds = sizes.size(), mine.points = sizes.empty() ? 0 : sizes[0];
+      mine.clouds = sizes.size();
+      mine.points = sizes.empty() ? 0 : sizes[0];
     });
+
     mine.thrown = thrown_ ? 1 : 0;
-    const std::vector<said> all = gather(comm_, ranks_, &mine, 1);
+    const std::vector<said> said_by = gather(comm_, ranks_, &mine, 1);
     for (int r = 0; r < ranks_; ++r)
-      if (all[std::size_t(r)].thrown != 0) end_all(r);
+      if (said_by[std::size_t(r)].thrown != 0) end_all(r);
+
     for (int r = 1; r < ranks_; ++r) {
-      const auto differs = [&](const char* what, std::uint64_t its, std::uint64_t others) {
-        return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(its) + " " + what +
-               ", rank 0 about " + std::to_string(others);
+      const auto differs = [&](const char* what, std::uint64_t counted, std::uint64_t by_rank_0) {
+        return "clearance: rank " + std::to_string(r) + " asks about " + std::to_string(counted) + " " + what +
+               ", rank 0 about " + std::to_string(by_rank_0);
       };
-      const said& its = all[std::size_t(r)];
-      if (its.parts != all[0].parts) throw std::invalid_argument(differs("parts", its.parts, all[0].parts));
-      if (its.clouds != all[0].clouds) throw std::invalid_argument(differs("clouds", its.clouds, all[0].clouds));
-      if (its.poses != all[0].poses)
+      const said& rank = said_by[std::size_t(r)];
+      if (rank.parts != said_by[0].parts) throw std::invalid_argument(differs("parts", rank.parts, said_by[0].parts));
+      if (rank.clouds != said_by[0].clouds)
+        throw std::invalid_argument(differs("clouds", rank.clouds, said_by[0].clouds));
+      if (rank.poses != said_by[0].poses)
         throw std::invalid_argument("clearance: rank " + std::to_string(r) + " asks about other poses than rank 0");
     }
+
     std::vector<std::uint64_t> table;
-    for (const said& its : all) table.push_back(its.points);
+    for (const said& rank : said_by) table.push_back(rank.points);
     if (sizes.size() > 1) table = gather(comm_, ranks_, sizes.data(), sizes.size());
     if (sizes.empty()) table.clear();
     sizes_ = std::move(table);
+
     std::uint64_t points = 0;
-    for (const std::uint64_t its : sizes_) points += its;
+    for (const std::uint64_t size : sizes_) points += size;
     if (points >= ~std::uint32_t(0))
       throw std::invalid_argument("clearance: more than 2^32 - 2 points on all ranks together");
   }
@@ -107,26 +118,28 @@ class together {
     attempt([&] { detail::pack(packed, mine); });
     const std::vector<std::uint64_t> sizes = all_well(packed.size());
     std::vector<std::size_t> begins{0};
-    for (const std::uint64_t its : sizes) begins.push_back(begins.back() + std::size_t(its));
+    for (const std::uint64_t size : sizes) begins.push_back(begins.back() + std::size_t(size));
     attempt([&] { bytes.resize(begins.back()); });
-    all_well();                       // nothing throws in what follows
+    all_well();  // nothing throws in what follows
+
     for (int r = 0; r < ranks_; ++r)  // one after another, because all together may exceed what MPI's counts can say
       for (std::size_t at = begins[std::size_t(r)], end = begins[std::size_t(r) + 1]; at < end; at += most_bytes) {
         if (r == rank_)
           std::copy_n(packed.data() + (at - begins[std::size_t(r)]), std::min(end - at, most_bytes), bytes.data() + at);
         check(MPI_Bcast(bytes.data() + at, int(std::min(end - at, most_bytes)), MPI_BYTE, r, comm_), "MPI_Bcast");
       }
+
     attempt([&] {
       const std::size_t clouds = sizes_.size() / std::size_t(ranks_);
       std::vector<std::uint32_t> first(clouds), whole(clouds), count(clouds);
       for (std::size_t k = 0; k < sizes_.size(); ++k) whole[k % clouds] += std::uint32_t(sizes_[k]);
       for (int r = 0; r < ranks_; ++r) {
         for (std::size_t c = 0; c < clouds; ++c) count[c] = std::uint32_t(sizes_[std::size_t(r) * clouds + c]);
-        Result its{};
+        Result result{};
         std::span<const std::byte> from =
             std::span(bytes).subspan(begins[std::size_t(r)], std::size_t(sizes[std::size_t(r)]));
-        detail::unpack(from, its);
-        all.add(std::move(its), {first, count, whole});
+        detail::unpack(from, result);
+        all.add(std::move(result), {first, count, whole});
         for (std::size_t c = 0; c < clouds; ++c) first[c] += count[c];
       }
     });
@@ -169,11 +182,11 @@ class together {
     throw std::runtime_error("clearance: rank " + std::to_string(by) + " of " + std::to_string(ranks_) + ": " + text);
   }
 
-  static constexpr std::size_t most_bytes = std::size_t(1) << 30;  ///< Of one broadcast.
+  static constexpr std::size_t most_bytes = std::size_t(1) << 30;  ///< The most bytes of one broadcast.
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  std::vector<std::uint64_t> sizes_;  ///< Of all clouds, rank after rank.
+  std::vector<std::uint64_t> sizes_;  ///< Points of all clouds, rank after rank.
   std::exception_ptr thrown_;
   std::string sentence_;
 };

@@ -47,12 +47,12 @@ class query<Q, mpi::shard<On>, PartView>
   /// other ranks then throw std::runtime_error with that message.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    mpi::together all(comm_);
-    all.agree(facts_.size(), poses, clouds);
+    mpi::together ranks(comm_);
+    ranks.agree(facts_.size(), poses, clouds);
     typename Q::result mine{};
-    all.attempt([&] { mine = query_(poses, clouds, q); });
+    ranks.attempt([&] { mine = query_(poses, clouds, q); });
     detail::joined_of<Q, PartView> joined(q, facts_);
-    all.join(joined, mine);
+    ranks.join(joined, mine);
     result_ = joined.result();
   }
   typename Q::result finish() { return *std::move(result_); }

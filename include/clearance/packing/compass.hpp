@@ -52,7 +52,10 @@ CLEARANCE_HD solid_sphere compass_search(const solid_sphere& from, double precis
     int way = 14;
     for (int k = lanes.rank(); k < 14; k += lanes.lanes()) {
       const double r = worth(now.center + step * compass(k), now.radius + step, best);
-      if (r > best) best = r, way = k;
+      if (r > best) {
+        best = r;
+        way = k;
+      }
     }
     lanes.agree(best, way);
     if (way < 14) {

@@ -43,7 +43,11 @@ class host_steps {
     std::copy(chosen_.begin(), chosen_.end(), out);
     return chosen_.size();
   }
-  void forget() { turns_.clear(), chosen_.clear(), known_ = numbers_ = 0; }
+  void forget() {
+    turns_.clear();
+    chosen_.clear();
+    known_ = numbers_ = 0;
+  }
 
   template <class F>
   void each(std::size_t n, const F& f) const {
@@ -56,7 +60,10 @@ class host_steps {
   template <class F>
   std::size_t select(std::size_t n, const F& f, std::uint32_t* out) const {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < n; ++i) out[count] = std::uint32_t(i), count += f(i);
+    for (std::size_t i = 0; i < n; ++i) {
+      out[count] = std::uint32_t(i);
+      count += f(i);
+    }
     return count;
   }
   template <class F>
@@ -149,8 +156,8 @@ struct gap_visit {
   room_view<V> in;
   gap_cell* cells;
   double* met;     ///< The gap at the middle, if that is in the solid.
-  double* open;    ///< An upper bound: if it is above `target` and can be narrowed down,
-  double* closed;  ///< or otherwise.
+  double* open;    ///< An upper bound of the gap, if it is above `target` and can be narrowed down.
+  double* closed;  ///< An upper bound of the gap, if it is not above `target` or cannot be narrowed down.
   double least, target, slack;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -253,8 +260,14 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
   double upper = 0;
   while (n > 0) {  // cells halve until 4 * reach <= slack, which is at least `finest`
     const double slack = std::max(least * tolerance, finest);
-    steps.each(n, detail::gap_visit<V>{in, cells.data(), met.reserve(n), open.reserve(n), closed.reserve(n), least,
-                                       least + slack, slack});
+    steps.each(n, detail::gap_visit<V>{.in = in,
+                                       .cells = cells.data(),
+                                       .met = met.reserve(n),
+                                       .open = open.reserve(n),
+                                       .closed = closed.reserve(n),
+                                       .least = least,
+                                       .target = least + slack,
+                                       .slack = slack});
     least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
     upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
     const double enough = std::max(upper, least + std::max(least * tolerance, finest));

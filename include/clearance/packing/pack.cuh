@@ -25,7 +25,10 @@ struct half_warp {
     for (int apart = 8; apart > 0; apart /= 2) {
       const double other = __shfl_xor_sync(group(), best, apart, 16);
       const int n = __shfl_xor_sync(group(), number, apart, 16);
-      if (other > best || (other == best && n < number)) best = other, number = n;
+      if (other > best || (other == best && n < number)) {
+        best = other;
+        number = n;
+      }
     }
   }
 

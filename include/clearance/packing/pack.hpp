@@ -87,7 +87,9 @@ class packer {
     out.stopped_by = fill();
     out.room = std::max(limits_.smallest, steps_.largest(alive_, rounds::bound_of{cells_.data(), keys_.data()}));
     const gap_report gap = certify();
-    out.gap = gap.certified, out.gap_mean = gap.mean, out.gap_p95 = gap.p95;
+    out.gap = gap.certified;
+    out.gap_mean = gap.mean;
+    out.gap_p95 = gap.p95;
     for (const solid_sphere& s : spheres_.here())
       out.spheres.push_back(
           {{real(s.center.x), real(s.center.y), real(s.center.z)}, real(s.radius)});  // floats, as `fit` made them
@@ -129,8 +131,12 @@ class packer {
       if (const auto why = check(spheres_.size(), [this] { return seconds(); }, [this] { return certify().certified; }))
         return *why;
       if (alive_ > std::min(tidy_at, pile_)) {
-        tidy(), tidy_at = std::max(tidy_at, alive_ + alive_ / 2);
-        while (alive_ > pile_ - pile_ / 8) trust_less(), pile_ += pile_ / 2;  // if it removes fewer, they are soon back
+        tidy();
+        tidy_at = std::max(tidy_at, alive_ + alive_ / 2);
+        while (alive_ > pile_ - pile_ / 8) {
+          trust_less();
+          pile_ += pile_ / 2;  // if fewer are removed, they are soon back
+        }
       }
       if (alive_ > most_cells || divided_ > most_divided) return pack_stop::search_limit;
       // All cells of a thin plate have nearly one key. Before they pile up, bounds are trusted less, so some cells go
@@ -153,13 +159,20 @@ class packer {
     const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
     if (climbers != 0) {
       steps_.climbers(climbers, rounds::climb_cells<view_type>{
-                                    f, some_.data(), these_.data(), cells_.data(), keys_.data(), options_.allow_overlap,
-                                    offers_.reserve(climbers), deeds_.data(),
-                                    memory_.reserve(climbers * local_list<view_type, one_lane>::capacity)});
+                                    .f = f,
+                                    .some = some_.data(),
+                                    .these = these_.data(),
+                                    .cells = cells_.data(),
+                                    .keys = keys_.data(),
+                                    .overlap = options_.allow_overlap,
+                                    .offers = offers_.reserve(climbers),
+                                    .deeds = deeds_.data(),
+                                    .memory = memory_.reserve(climbers * local_list<view_type, one_lane>::capacity)});
       place_spheres(climbers);
     }
     const std::size_t divided = steps_.select(some, dividing, these_.data());
-    cells_.reserve(alive_ + 8 * divided, alive_), keys_.reserve(alive_ + 8 * divided, alive_);
+    cells_.reserve(alive_ + 8 * divided, alive_);
+    keys_.reserve(alive_ + 8 * divided, alive_);
     steps_.each(8 * divided,
                 rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
     alive_ += 8 * divided;
@@ -185,7 +198,8 @@ class packer {
     const std::size_t kept = steps_.select(alive_, rounds::is_kept{keys_.data()}, some_.reserve(alive_));
     on_.for_each(kept, rounds::keep_cells{some_.data(), cells_.data(), keys_.data(), other_cells_.reserve(kept),
                                           other_keys_.reserve(kept)});
-    std::swap(cells_, other_cells_), std::swap(keys_, other_keys_);
+    std::swap(cells_, other_cells_);
+    std::swap(keys_, other_keys_);
     alive_ = kept;
     steps_.forget();
   }

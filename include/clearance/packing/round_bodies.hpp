@@ -21,7 +21,9 @@ class local_list {
 
   CLEARANCE_HD void prepare(const solid_sphere& now) {
     if (reach_ >= 1.5 * now.radius && (now.center - place_).norm() <= 0.25 * reach_) return;
-    place_ = now.center, reach_ = 2 * now.radius, count_ = 0;
+    place_ = now.center;
+    reach_ = 2 * now.radius;
+    count_ = 0;
     const auto sphere = [this](std::uint32_t i, double best) {
       if (all_.spheres[i].nearer(place_, best) < best) take(i);
       return best;
@@ -241,7 +243,10 @@ struct climb_cells {
     const solid_sphere start{c.middle, c.room()};
     solid_sphere found = climb(f.in, memory + i * local_list<V, Lanes>::capacity, start, farthest, lanes);
     solid_sphere grown = fit(f, overlap ? grow(f.in.solid, found, lanes) : found, overlap);
-    if (is_porous(f.in.solid) && !f.in.solid.inside(grown.center)) found = start, grown = fit(f, start, overlap);
+    if (is_porous(f.in.solid) && !f.in.solid.inside(grown.center)) {
+      found = start;
+      grown = fit(f, start, overlap);
+    }
     if (lanes.rank() != 0) return;
     const double least = 0.98 * found.radius;
     if (!overlap) found = grown;
@@ -290,7 +295,10 @@ struct keep_cells {
   const double* keys;
   cell* to;
   double* keys_to;
-  CLEARANCE_HD void operator()(std::size_t i) const { to[i] = cells[some[i]], keys_to[i] = keys[some[i]]; }
+  CLEARANCE_HD void operator()(std::size_t i) const {
+    to[i] = cells[some[i]];
+    keys_to[i] = keys[some[i]];
+  }
 };
 
 template <solid_view V>

@@ -11,7 +11,7 @@
 namespace clearance {
 
 /// A view of any point source, for a host: the source's own view and a table of its functions. A scan calls one for a
-/// hundred points, so it is as fast as the source. Of an uncertain source, `uncertain<any_points, ...>` is one, too.
+/// hundred points, so it is as fast as the source. `uncertain<any_points, ...>` is any uncertain source.
 class any_points {
  public:
   using can = clearance::can<sources::read, sources::surveyed, sources::unfiltered, sources::ranged, sources::seen,
@@ -30,7 +30,8 @@ class any_points {
   sample operator[](std::size_t i) const { return of_->at(view_, begin_ + i); }
   any_points slice(std::size_t begin, std::size_t end) const {
     any_points piece = *this;
-    piece.begin_ += begin, piece.size_ = end - begin;
+    piece.begin_ += begin;
+    piece.size_ = end - begin;
     return piece;
   }
 

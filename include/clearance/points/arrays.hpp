@@ -51,7 +51,7 @@ struct in_device_memory : S {
 
 namespace detail {
 
-/// The source itself, without what its type says.
+/// The source itself, without the mark that its memory is a device's.
 template <point_source S>
 const S& read_here(const S& source) {
   return source;
@@ -81,7 +81,7 @@ using pointed_to = std::remove_cv_t<std::remove_pointer_t<decltype(address_of(st
 template <class P>
 concept points_to_records = xyz_record<pointed_to<P>>;
 
-/// Three iterators as one, as Thrust's.
+/// Three iterators as one, such as Thrust's zip iterator.
 template <class P, std::size_t I>
 using zipped_iterator = std::remove_cvref_t<decltype(get<I>(std::declval<const P&>().get_iterator_tuple()))>;
 template <class P>
@@ -118,8 +118,12 @@ auto records_at(const T* first, std::size_t count) {
     return point_span(reinterpret_cast<const vec3*>(first), count);
   } else {
     strided_points<scalar> records;
-    records.data = reinterpret_cast<const std::byte*>(first), records.count = count, records.step = sizeof(T);
-    records.offset[0] = offsetof(T, x), records.offset[1] = offsetof(T, y), records.offset[2] = offsetof(T, z);
+    records.data = reinterpret_cast<const std::byte*>(first);
+    records.count = count;
+    records.step = sizeof(T);
+    records.offset[0] = offsetof(T, x);
+    records.offset[1] = offsetof(T, y);
+    records.offset[2] = offsetof(T, z);
     return records;
   }
 }
@@ -141,9 +145,9 @@ auto points_of(const P& first, std::size_t count) {
 }
 template <detail::zips_coordinates P>
 auto points_of(const P& first, std::size_t count) {
-  const auto& all = first.get_iterator_tuple();
-  const coordinate_arrays arrays{detail::first_address(get<0>(all), count), detail::first_address(get<1>(all), count),
-                                 detail::first_address(get<2>(all), count), count};
+  const auto& axes = first.get_iterator_tuple();
+  const coordinate_arrays arrays{detail::first_address(get<0>(axes), count), detail::first_address(get<1>(axes), count),
+                                 detail::first_address(get<2>(axes), count), count};
   return detail::marked<detail::zip_host_readable<P>>(arrays);
 }
 
@@ -153,7 +157,7 @@ concept point_container = !point_source<C> && (std::is_convertible_v<const C&, p
   { std::size(c) } -> std::convertible_to<std::size_t>;
   requires detail::points_to_records<decltype(std::data(c))>;
 });
-/// One that has the points, while spans look at another's.
+/// An array that owns its points; a span views those of another array.
 template <class C>
 concept owning_points = point_container<C> && requires(const C& c) { std::data(c); } &&
                         !std::ranges::borrowed_range<C> && !requires { typename C::element_type; };

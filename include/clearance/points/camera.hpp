@@ -58,8 +58,8 @@ struct brown_lens {
     return {s.x, s.y};
   }
 
-  /// The ray that is seen there: by Newton's method, with steps that are shortened until they help. None if that does
-  /// not converge, or if the lens folds between the centre and the ray: then the place shows several rays.
+  /// The ray that is seen at a place: by Newton's method, with steps that are shortened until they help. None if that
+  /// does not converge, or if the lens folds between the centre and the ray: then the place shows several rays.
   std::optional<at_one> unproject(at_one place) const {
     const auto off = [&](const seen& s) { return std::hypot(s.x - place.x, s.y - place.y); };
     at_one ray = place;
@@ -72,9 +72,10 @@ struct brown_lens {
       double share = 1;
       for (; share > 1e-4; share /= 2) {
         const at_one next{ray.x - share * dx, ray.y - share * dy};
-        const seen there = shown(next);
-        if (!(off(there) < before)) continue;
-        ray = next, s = there;
+        const seen seen_next = shown(next);
+        if (!(off(seen_next) < before)) continue;
+        ray = next;
+        s = seen_next;
         break;
       }
       if (!(share > 1e-4)) return {};
@@ -95,7 +96,7 @@ struct brown_lens {
 /// from the centre.
 class fisheye_lens {
  public:
-  /// Wider rays have none: depth along the axis says nothing about them.
+  /// The widest angle of a ray, in radians: depth along the axis says nothing about wider ones.
   static constexpr double widest = 1.55;
 
   explicit fisheye_lens(const std::array<double, 4>& k) : k_(k) {
@@ -107,7 +108,7 @@ class fisheye_lens {
     const double r = std::hypot(ray.x, ray.y), by = r > 0 ? radius(std::atan(r)) / r : 1;
     return {ray.x * by, ray.y * by};
   }
-  /// None where the ray would be too wide, or beyond where the lens folds.
+  /// The ray that is seen at a place. None where the ray would be too wide, or beyond where the lens folds.
   std::optional<at_one> unproject(at_one place) const {
     const double r = std::hypot(place.x, place.y);
     if (!(r <= radius(limit_))) return {};
@@ -138,7 +139,7 @@ class fisheye_lens {
   double limit_ = 0;  // up to here the radius grows with the angle
 };
 
-/// What a CameraInfo says, by its names. R is not here: it turns a camera into a rectified one, and this is about the
+/// What a CameraInfo says, by its names. R is left out: it turns a camera into a rectified one, and this is about the
 /// camera itself. Of a rectified image give the first three columns of P as `k`, and neither `d` nor a model.
 struct camera_info {
   std::int64_t width = 0, height = 0;  ///< Pixels of the sensor.
@@ -165,7 +166,8 @@ struct ray_table {
   template <class... Any>
   void image(const Any&...) const&& = delete;  // the rays would be gone before they are read; give the table a name
   template <owning_range Pixels, class... Size>
-  void image(const Pixels&&, Size...) const& = delete;  // and the pixels
+  void image(const Pixels&&,
+             Size...) const& = delete;  // the pixels would be gone before they are read; give them a name
 };
 
 /// A calibrated camera, with its lens, its binning and its region. Made once, when a CameraInfo comes or changes.
@@ -175,8 +177,8 @@ class camera {
   /// focal length, or if the model is unknown.
   explicit camera(const camera_info& info);
 
-  std::uint32_t width() const { return width_; }  ///< Of the images, in pixels.
-  std::uint32_t height() const { return height_; }
+  std::uint32_t width() const { return width_; }    ///< Columns of an image.
+  std::uint32_t height() const { return height_; }  ///< Rows of an image.
   /// What depth_image takes, if the lens bends no ray and pixels have no skew.
   std::optional<intrinsics> pinhole() const {
     if (!std::holds_alternative<std::monostate>(lens_) || skew_ != 0) return {};
@@ -187,7 +189,7 @@ class camera {
     const at_one seen = std::visit([&](const auto& lens) { return bent(lens, ray); }, lens_);
     return {at_.fx * seen.x + skew_ * seen.y + at_.cx, at_.fy * seen.y + at_.cy};
   }
-  /// The ray of a pixel. None if the lens shows none there or several, or if the way back misses the pixel.
+  /// The ray of a pixel. None if the lens shows none or several at that place, or if the way back misses the pixel.
   std::optional<at_one> ray_of(double u, double v) const {
     const double y = (v - at_.cy) / at_.fy, x = (u - at_.cx - skew_ * y) / at_.fx;
     const auto ray = std::visit([&](const auto& lens) { return straight(lens, {x, y}); }, lens_);
@@ -261,7 +263,8 @@ inline camera::camera(const camera_info& info) {
                              " that reaches beyond its " + pixels(info.width, info.height));
   const double bin_x = double(std::max<std::int64_t>(1, info.binning_x)),
                bin_y = double(std::max<std::int64_t>(1, info.binning_y));
-  width_ = std::uint32_t(double(wide) / bin_x), height_ = std::uint32_t(double(high) / bin_y);
+  width_ = std::uint32_t(double(wide) / bin_x);
+  height_ = std::uint32_t(double(high) / bin_y);
   detail::require_camera(width_ > 0 && height_ > 0, "bins more pixels than its region has");
 
   const auto& k = info.k;

@@ -40,14 +40,21 @@ struct coordinate_arrays {
   CLEARANCE_HD unsigned look(const four& r, std::size_t, vec3 (&out)[4]) const {
     real f[12];
     CLEARANCE_UNROLL
-    for (int j = 0; j < 4; ++j) f[3 * j] = r.x.f[j], f[3 * j + 1] = r.y.f[j], f[3 * j + 2] = r.z.f[j];
+    for (int j = 0; j < 4; ++j) {
+      f[3 * j] = r.x.f[j];
+      f[3 * j + 1] = r.y.f[j];
+      f[3 * j + 2] = r.z.f[j];
+    }
     return filter.look(f, out);
   }
 
   CLEARANCE_HD bool unfiltered() const { return filter.plain(); }
   CLEARANCE_HD coordinate_arrays slice(std::size_t begin, std::size_t end) const {
     coordinate_arrays some = *this;
-    some.x += begin, some.y += begin, some.z += begin, some.count = end - begin;
+    some.x += begin;
+    some.y += begin;
+    some.z += begin;
+    some.count = end - begin;
     return some;
   }
 
@@ -63,7 +70,7 @@ struct coordinate_arrays {
   template <class F>
   coordinate_arrays with_pieces(const F& f) const {
     coordinate_arrays same = *this;
-    for (const real** its : {&same.x, &same.y, &same.z}) *its = f(column{*its, count}).values;
+    for (const real** array : {&same.x, &same.y, &same.z}) *array = f(column{*array, count}).values;
     return same;
   }
   /// See `rounding_of`.

@@ -22,24 +22,30 @@ struct depths {
       const std::uint16_t d = pixels[j], less = std::uint16_t(d - 1), more = std::uint16_t(d + 1);
       low = less < low ? less : low;
       high = more > high ? more : high;
-      zeros = std::uint16_t(zeros + (d == 0)), full = std::uint16_t(full + (d == 65535));
+      zeros = std::uint16_t(zeros + (d == 0));
+      full = std::uint16_t(full + (d == 65535));
     }
-    missing = zeros, saturated = full;
-    ends[0] = std::uint16_t(low + 1), ends[1] = std::uint16_t(high - 1);
+    missing = zeros;
+    saturated = full;
+    ends[0] = std::uint16_t(low + 1);
+    ends[1] = std::uint16_t(high - 1);
   }
   explicit depths(const real* pixels) {
     std::uint32_t huge = 0;
     alignas(64) real depth[surveyed_points];
     for (std::size_t j = 0; j < surveyed_points; ++j) {
       const real d = pixels[j], size = std::abs(d);
-      missing += d == 0, not_finite += !(size < infinity), huge += !(size <= 1e18f);
+      missing += d == 0;
+      not_finite += !(size < infinity);
+      huge += !(size <= 1e18f);
       depth[j] = d == 0 || !(size < infinity) ? not_a_number : d;
     }
     strange = huge != not_finite;
     if (not_finite != 0)
       for (std::size_t j = 0; j < surveyed_points; ++j) minus_infinity += pixels[j] == -infinity;
     not_finite -= minus_infinity;
-    ends[0] = infinity, ends[1] = -infinity;
+    ends[0] = infinity;
+    ends[1] = -infinity;
     spread(depth, ends[0], ends[1]);
   }
 };
@@ -123,7 +129,8 @@ struct depth_image {
     CLEARANCE_UNROLL
     for (std::uint32_t j = 0; j < 4; ++j) {
       const sample s = deproject(r.d[j], u + j, v);
-      out[j] = s.position, reasons |= unsigned(s.dropped) << 8 * j;
+      out[j] = s.position;
+      reasons |= unsigned(s.dropped) << 8 * j;
     }
     return reasons;
   }

@@ -14,7 +14,10 @@ struct extremes {
   alignas(64) real low[Lanes], high[Lanes];
 
   extremes() {
-    for (std::size_t j = 0; j < Lanes; ++j) low[j] = infinity, high[j] = -infinity;
+    for (std::size_t j = 0; j < Lanes; ++j) {
+      low[j] = infinity;
+      high[j] = -infinity;
+    }
   }
   void add(const real* f) {
     for (std::size_t j = 0; j < Lanes; ++j) {
@@ -30,7 +33,10 @@ inline void spread(const real* values, real& low, real& high, std::size_t count 
   constexpr std::size_t lanes = 16;
   extremes<lanes> all;
   for (std::size_t i = 0; i < count; i += lanes) all.add(values + i);
-  for (std::size_t j = 0; j < lanes; ++j) low = min(low, all.low[j]), high = max(high, all.high[j]);
+  for (std::size_t j = 0; j < lanes; ++j) {
+    low = min(low, all.low[j]);
+    high = max(high, all.high[j]);
+  }
 }
 
 }  // namespace clearance

@@ -9,14 +9,14 @@ namespace clearance {
 
 /// Which room behind its pixels an image hides, in metres of z.
 struct hiding {
-  real nearest = 0.1f;            ///< From here on a pixel without a return hides everything,
-  real farthest = 10;             ///< up to here. What is farther does not matter.
+  real nearest = 0.1f;            ///< From this depth on a pixel without a return hides everything.
+  real farthest = 10;             ///< Up to this depth pixels hide. What is farther does not matter.
   bool infinite_is_free = false;  ///< A pixel of +inf says that nothing is there (REP 117); otherwise it is no return.
 };
 
 /// The hidden room of an image as a source: each pixel is the way behind its return, along its middle. Its point is
-/// where that begins. `half_pixel` is half the diagonal of a pixel at z = 1: so wide is the room around the way. The
-/// bracket carries it.
+/// where that way begins. `half_pixel` is half the diagonal of a pixel at z = 1: the room around a way is so wide. The
+/// bracket carries that width.
 template <seeing_image Image>
 struct hidden {
   static constexpr bool sight = true;
@@ -38,7 +38,8 @@ struct hidden {
     if (is_own != own) return {s.position, drop_reason::masked};
     return starting(s, i);
   }
-  /// Up to where the room ends. Along the pixel itself: its point may be too near the camera to tell a direction.
+  /// The way from `start` to where the room ends. It goes along the pixel itself, because the point may be too near the
+  /// camera to tell a direction.
   CLEARANCE_HD capsule around(std::size_t i, vec3 start) const {
     return {start, scaled(max(room.farthest - start.z, 0), image.way(i)), 0};
   }
@@ -72,7 +73,7 @@ struct hidden {
     return true;
   }
 
-  /// The image's own, the pixel's width, and what rounding adds to the way.
+  /// The error of the image, the pixel's width, and what rounding adds to the way.
   position_error rounding() const {
     const position_error own = rounding_of(image);
     return {own.absolute, own.relative + double(half_pixel) + 0x1p-19};

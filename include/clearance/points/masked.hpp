@@ -9,9 +9,9 @@ namespace clearance {
 
 /// Whose a point is. One byte, so that a mask of labels is an image.
 enum class point_label : std::uint8_t {
-  rest,       ///< Not the robot's.
-  own,        ///< The robot's.
-  uncertain,  ///< Perhaps the robot's. It is not hidden.
+  rest,       ///< A point that is not the robot's.
+  own,        ///< A point of the robot.
+  uncertain,  ///< Perhaps a point of the robot. It is not hidden.
   no_point,   ///< There was no valid point.
 };
 

@@ -44,13 +44,13 @@ struct fetched_types<S> {
 
 }  // namespace detail
 
-/// Those of the abilities that S has.
+/// The abilities among `Abilities` that S has.
 template <class S, class... Abilities>
 using can_as = typename detail::joined<std::conditional_t<Abilities::template of<S>, can<Abilities>, can<>>...>::type;
-/// Those abilities, on a condition.
+/// `Abilities` if the condition holds, else none.
 template <bool If, class... Abilities>
 using can_if = std::conditional_t<If, can<Abilities...>, can<>>;
-/// All abilities of some lists.
+/// The abilities of all lists together.
 template <class... Lists>
 using can_all = typename detail::joined<Lists...>::type;
 
@@ -68,91 +68,91 @@ struct passes_on {
 
   CLEARANCE_HD std::size_t number_in_viewed(std::size_t i) const { return i; }
 
-  CLEARANCE_HD std::size_t size() const { return its().size(); }
-  position_error rounding() const { return rounding_of(its()); }
-  CLEARANCE_HD real beyond(std::size_t i, vec3 p) const { return beyond_range(its(), number(i), p); }
-  CLEARANCE_HD vec3 sensor() const { return sensor_of(its()); }
+  CLEARANCE_HD std::size_t size() const { return under().size(); }
+  position_error rounding() const { return rounding_of(under()); }
+  CLEARANCE_HD real beyond(std::size_t i, vec3 p) const { return beyond_range(under(), number(i), p); }
+  CLEARANCE_HD vec3 sensor() const { return sensor_of(under()); }
 
   CLEARANCE_HD bool fetches() const
     requires passes<sources::fetched>
   {
-    return its().fetches();
+    return under().fetches();
   }
   CLEARANCE_HD cursor seek(std::size_t i) const
     requires passes<sources::fetched>
   {
-    return its().seek(number(i));
+    return under().seek(number(i));
   }
   CLEARANCE_HD cursor skip(const cursor& c, std::size_t n) const
     requires passes<sources::fetched>
   {
-    return its().skip(c, n);
+    return under().skip(c, n);
   }
   CLEARANCE_HD four fetch(const cursor& c) const
     requires passes<sources::fetched>
   {
-    return its().fetch(c);
+    return under().fetch(c);
   }
   CLEARANCE_HD unsigned look(const four& f, std::size_t i, vec3 (&at)[4]) const
     requires passes<sources::fetched>
   {
-    return its().look(f, number(i), at);
+    return under().look(f, number(i), at);
   }
 
   CLEARANCE_HD bool unfiltered() const
     requires passes<sources::unfiltered>
   {
-    return its().unfiltered();
+    return under().unfiltered();
   }
   bool survey(std::size_t begin, extent& box, std::uint32_t (&dropped)[drop_reasons]) const
     requires passes<sources::surveyed>
   {
-    return its().survey(number(begin), box, dropped);
+    return under().survey(number(begin), box, dropped);
   }
 
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
     requires passes<sources::capsules>
   {
-    return its().around(number(i), p);
+    return under().around(number(i), p);
   }
   bool survey_capsules(std::size_t begin, extent& starts, extent& ends, real& widest,
                        std::uint32_t (&dropped)[drop_reasons]) const
     requires passes<sources::surveyed_around>
   {
-    return its().survey_capsules(number(begin), starts, ends, widest, dropped);
+    return under().survey_capsules(number(begin), starts, ends, widest, dropped);
   }
 
   std::size_t pieces() const
     requires passes<sources::in_pieces>
   {
-    return its().pieces();
+    return under().pieces();
   }
   std::size_t first(std::size_t k) const
     requires passes<sources::in_pieces>
   {
-    return its().first(k);
+    return under().first(k);
   }
 
   std::span<const std::byte> bytes() const
     requires passes<sources::copied>
   {
-    return its().bytes();
+    return under().bytes();
   }
   Self at(const std::byte* copy) const
     requires passes<sources::copied>
   {
-    return over(its().at(copy));
+    return over(under().at(copy));
   }
   template <class F>
   Self with_pieces(const F& f) const
     requires passes<sources::copied_in_pieces>
   {
-    return over(its().with_pieces(f));
+    return over(under().with_pieces(f));
   }
 
  private:
   CLEARANCE_HD const Self& self() const { return static_cast<const Self&>(*this); }
-  CLEARANCE_HD const S& its() const { return self().*Self::viewed; }
+  CLEARANCE_HD const S& under() const { return self().*Self::viewed; }
   CLEARANCE_HD std::size_t number(std::size_t i) const { return self().number_in_viewed(i); }
   Self over(const S& other) const {
     Self same = self();

@@ -61,26 +61,27 @@ namespace detail {
 template <class Message>
 point_field field_of(const Message& message, std::string_view name, std::uint8_t wanted) {
   static constexpr const char* types[] = {"INT8", "UINT8", "INT16", "UINT16", "INT32", "UINT32", "FLOAT32", "FLOAT64"};
-  const std::string its = "field " + std::string(name);
+  const std::string wanted_field = "field " + std::string(name);
   std::string others;
   point_field found;
   found.count = ~0u;
   for (const auto& field : message.fields) {
     others += (others.empty() ? "" : ", ") + std::string(field.name);
     if (field.name != name) continue;
-    if (found.count != ~0u) refuse_cloud("has two of the " + its);
+    if (found.count != ~0u) refuse_cloud("has two of the " + wanted_field);
     found = {name, std::uint32_t(field.offset), std::uint8_t(field.datatype), std::min(std::uint32_t(field.count), 9u)};
   }
-  if (found.count == ~0u) refuse_cloud("has no " + its + " (it has: " + (others.empty() ? "none" : others) + ")");
+  if (found.count == ~0u)
+    refuse_cloud("has no " + wanted_field + " (it has: " + (others.empty() ? "none" : others) + ")");
   if (found.datatype != wanted) {
     const bool known = found.datatype >= 1 && found.datatype <= 8;
     const bool first = name == "x" && found.datatype == point_field::float64;
     const char* const hint = first ? "; point_cloud2_view<double> reads it" : "";
-    refuse_cloud("holds its " + its + " as " +
+    refuse_cloud("holds its " + wanted_field + " as " +
                  (known ? types[found.datatype - 1] : "datatype " + std::to_string(found.datatype)) + ", not as " +
                  types[wanted - 1] + hint);
   }
-  if (found.count > 1) refuse_cloud("holds several numbers in its " + its);
+  if (found.count > 1) refuse_cloud("holds several numbers in its " + wanted_field);
   return found;
 }
 
@@ -98,6 +99,7 @@ strided_points<Scalar> point_cloud2_view(Message&& message, const point_filter& 
   if (message.is_bigendian) detail::refuse_cloud("is big-endian");
   const std::span<const std::byte> data = std::as_bytes(std::span(message.data));
   const std::uint64_t rows = message.height, columns = message.width, step = message.point_step;
+
   strided_points<Scalar> view;
   for (std::size_t k = 0; k < 3; ++k) {
     const point_field field = detail::field_of(message, std::string_view("xyz").substr(k, 1), wanted);
@@ -106,6 +108,7 @@ strided_points<Scalar> point_cloud2_view(Message&& message, const point_filter& 
                            ", beyond its point_step of " + std::to_string(step) + " bytes");
     view.offset[k] = field.offset;
   }
+
   const std::uint64_t row_bytes = columns * step, said = message.row_step;
   const auto row_step = clearance::row_step(rows, row_bytes, said, data.size());
   if (!row_step)
@@ -113,8 +116,14 @@ strided_points<Scalar> point_cloud2_view(Message&& message, const point_filter& 
                          std::to_string(step) + " bytes" +
                          (rows > 1 ? ", in rows of " + std::to_string(said) + " bytes (row_step)" : "") +
                          ", but holds " + std::to_string(data.size()) + " bytes");
-  view.data = data.data(), view.count = rows * columns, view.step = std::uint32_t(step);
-  if (*row_step != row_bytes) view.width = std::uint32_t(columns), view.row_step = *row_step;
+
+  view.data = data.data();
+  view.count = rows * columns;
+  view.step = std::uint32_t(step);
+  if (*row_step != row_bytes) {
+    view.width = std::uint32_t(columns);
+    view.row_step = *row_step;
+  }
   view.filter = filter;
   return view;
 }

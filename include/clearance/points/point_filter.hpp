@@ -12,7 +12,7 @@ struct point_filter {
   vec3 sensor = {0, 0, 0};
   bool zero_is_missing = false;  ///< Some lidars write their own position if nothing came back.
 
-  /// Only finiteness is tested. The same for all points, so a kernel asks once.
+  /// Is only finiteness tested? That is the same for all points, so a kernel asks once.
   CLEARANCE_HD bool plain() const { return !zero_is_missing && !(nearest > 0) && !(farthest < infinity); }
 
   /// See `rounding_of`.
@@ -74,7 +74,7 @@ CLEARANCE_HD sample depth_sample(Pixel d, vec3 p, real nearest, real farthest, b
   return {p, drop_reason::none};
 }
 
-/// The same of a depth's limits: how far a position's z is from them, in metres.
+/// How far a position's z is from the limits of depth, in metres; 0 if it is within.
 CLEARANCE_HD inline real beyond_depths(vec3 p, real nearest, real farthest) {
   return max(max(nearest - p.z, p.z - farthest), 0);
 }

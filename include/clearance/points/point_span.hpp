@@ -42,10 +42,10 @@ inline bool sum_is_finite(const real* f) {
 
 /// Counts points with a coordinate that is not finite.
 inline std::uint32_t count_not_finite(const real* f) {
-  std::uint32_t all = 0;
+  std::uint32_t found = 0;
   for (std::size_t i = 0; i < 3 * surveyed_points; i += 3)  // as is_finite, without branches
-    all += !(int(std::abs(f[i]) <= 1e18f) & int(std::abs(f[i + 1]) <= 1e18f) & int(std::abs(f[i + 2]) <= 1e18f));
-  return all;
+    found += !(int(std::abs(f[i]) <= 1e18f) & int(std::abs(f[i + 1]) <= 1e18f) & int(std::abs(f[i + 2]) <= 1e18f));
+  return found;
 }
 
 struct surveyed {
@@ -56,8 +56,8 @@ struct surveyed {
 /// beyond the array does nothing.
 inline void ask_ahead(const real* f) {
   constexpr std::size_t tile = 3 * surveyed_points * sizeof(real), tiles = 4, line = 64;
-  const auto there = reinterpret_cast<std::uintptr_t>(f) + tiles * tile;
-  for (std::size_t i = 0; i < tile; i += line) __builtin_prefetch(reinterpret_cast<const void*>(there + i));
+  const auto ahead = reinterpret_cast<std::uintptr_t>(f) + tiles * tile;
+  for (std::size_t i = 0; i < tile; i += line) __builtin_prefetch(reinterpret_cast<const void*>(ahead + i));
 }
 inline surveyed survey_here(const real* f) {
   ask_ahead(f);
@@ -121,7 +121,8 @@ struct point_span {
   }
   CLEARANCE_HD point_span slice(std::size_t begin, std::size_t end) const {
     point_span some = *this;
-    some.points += begin, some.count = end - begin;
+    some.points += begin;
+    some.count = end - begin;
     return some;
   }
 

@@ -82,7 +82,8 @@ struct ray_image {
     CLEARANCE_UNROLL
     for (int j = 0; j < 4; ++j) {
       const sample s = along(f.rays.r[j], f.pixels.d[j]);
-      out[j] = s.position, reasons |= unsigned(s.dropped) << 8 * j;
+      out[j] = s.position;
+      reasons |= unsigned(s.dropped) << 8 * j;
     }
     return reasons;
   }
@@ -130,7 +131,8 @@ inline double half_pixel_of(const ray* rays, std::size_t width, std::size_t heig
   for (std::size_t v = 0; v + 1 < height; ++v)
     for (std::size_t u = 0; u + 1 < width; ++u) {
       const std::size_t i = v * width + u;
-      apart(i, i + width + 1), apart(i + 1, i + width);
+      apart(i, i + width + 1);
+      apart(i + 1, i + width);
     }
   if (width != 1 && height != 1) return widest;
   for (std::size_t i = 0; i + 1 < width * height; ++i) apart(i, i + 1);

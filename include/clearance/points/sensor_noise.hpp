@@ -88,7 +88,7 @@ struct no_noise {
 /// Microsoft's first Kinect: 1.2 mm + 1.9 mm/m^2 (z - 0.4 m)^2 along z. Nguyen, Izadi, Lovell, "Modeling Kinect sensor
 /// noise for improved 3D reconstruction and tracking", 3DIMPVT 2012. They measured walls at up to 60 degrees.
 struct kinect_noise {
-  real k = 3;  ///< So many standard deviations.
+  real k = 3;  ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real z = p.z - 0.4f;
@@ -105,10 +105,10 @@ struct kinect_noise {
 /// Stereo, active or passive, and structured light: z^2 s / (f B) along z. Gallup et al., "Variable baseline/resolution
 /// stereo", CVPR 2008; for structured light Khoshelham and Elberink, Sensors 12(2), 2012.
 struct stereo_noise {
-  real focal_length;  ///< f, in pixels.
-  real baseline;      ///< B, in metres.
-  real disparity;     ///< s, the standard deviation of a disparity, in pixels.
-  real k = 3;         ///< So many standard deviations.
+  real focal_length;  ///< The focal length f, in pixels.
+  real baseline;      ///< The distance B between the cameras, in metres.
+  real disparity;     ///< The standard deviation s of a disparity, in pixels.
+  real k = 3;         ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const {
     const real each = divide(product(k, disparity), product(focal_length, baseline));
@@ -119,7 +119,8 @@ struct stereo_noise {
     return detail::most_along_ray(z * z * (k * disparity / (focal_length * baseline)) * (1 + slack), box);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(disparity, "a stereo camera's disparity");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(disparity, "a stereo camera's disparity");
     for (const real x : {focal_length, baseline})
       if (!(x > 0 && x <= largest_real))
         throw std::invalid_argument("clearance: a stereo camera's focal length and baseline are " +
@@ -132,9 +133,9 @@ struct stereo_noise {
 /// Time of flight: constant + square |p|^2, because light that returns falls with the square of the way. Lange and
 /// Seitz, "Solid-state time-of-flight range camera", IEEE Journal of Quantum Electronics 37(3), 2001.
 struct tof_noise {
-  real constant;  ///< Metres.
-  real square;    ///< Metres for each square metre.
-  real k = 3;     ///< So many standard deviations.
+  real constant;  ///< The standard deviation at distance 0, in metres.
+  real square;    ///< What the deviation grows by for each square metre of squared distance, in metres.
+  real k = 3;     ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(square, dot(p, p), constant)); }
   real most(std::size_t, const extent& box) const {
@@ -142,8 +143,8 @@ struct tof_noise {
     return k * (square * away * away + constant) * (1 + slack);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"),
-        detail::check_uncertain(constant, "a time of flight camera's constant");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(constant, "a time of flight camera's constant");
     detail::check_uncertain(square, "what a time of flight camera's noise grows by");
   }
   tof_noise slice(std::size_t, std::size_t) const { return *this; }
@@ -152,16 +153,17 @@ struct tof_noise {
 /// LiDAR: constant + share |p|, as data sheets say it. Glennie and Lichti, "Static calibration and analysis of the
 /// Velodyne HDL-64E S2", Remote Sensing 2(6), 2010.
 struct lidar_noise {
-  real constant;   ///< Metres.
-  real share = 0;  ///< Metres for each metre.
-  real k = 3;      ///< So many standard deviations.
+  real constant;   ///< The standard deviation at distance 0, in metres.
+  real share = 0;  ///< What the deviation grows by for each metre of distance, in metres.
+  real k = 3;      ///< How many standard deviations a point may be off.
 
   CLEARANCE_HD real operator()(std::size_t, vec3 p) const { return product(k, fma(share, length(p), constant)); }
   real most(std::size_t, const extent& box) const {
     return k * (share * detail::farthest_in(box) + constant) * (1 + slack);
   }
   void check(std::size_t) const {
-    detail::check_uncertain(k, "the noise's k"), detail::check_uncertain(constant, "a LiDAR's constant");
+    detail::check_uncertain(k, "the noise's k");
+    detail::check_uncertain(constant, "a LiDAR's constant");
     detail::check_uncertain(share, "what a LiDAR's noise grows by");
   }
   lidar_noise slice(std::size_t, std::size_t) const { return *this; }
@@ -192,7 +194,9 @@ struct point_radii {
     bool ordered = true;
     for (std::size_t j = 0; j < surveyed_points; ++j) {
       const real r = radii[begin + j];
-      least = min(least, r), most = max(most, r), ordered &= r == r;
+      least = min(least, r);
+      most = max(most, r);
+      ordered &= r == r;
     }
     return ordered && least >= 0 ? most : infinity;
   }
@@ -253,13 +257,16 @@ struct any_noise {
   void check(std::size_t points) const {
     if (kind > noise_kind::radii)
       throw std::invalid_argument("clearance: there is no kind of noise number " + std::to_string(int(kind)));
-    kinect.check(points), stereo.check(points), tof.check(points), lidar.check(points);
+    kinect.check(points);
+    stereo.check(points);
+    tof.check(points);
+    lidar.check(points);
     if (kind == noise_kind::radii) radii.check(points);
   }
   any_noise slice(std::size_t begin, std::size_t end) const {
-    any_noise its = *this;
-    if (kind == noise_kind::radii) its.radii = radii.slice(begin, end);
-    return its;
+    any_noise piece = *this;
+    if (kind == noise_kind::radii) piece.radii = radii.slice(begin, end);
+    return piece;
   }
 };
 

@@ -54,13 +54,13 @@ class sharded {
   position_error rounding() const {
     position_error worst;
     for (const S& piece : piece_) {
-      const position_error its = rounding_of(piece);
-      worst = {std::max(worst.absolute, its.absolute), std::max(worst.relative, its.relative)};
+      const position_error error = rounding_of(piece);
+      worst = {std::max(worst.absolute, error.absolute), std::max(worst.relative, error.relative)};
     }
     return worst;
   }
 
-  /// The same cloud, with `f(piece)`, of the same type, for each piece.
+  /// This cloud with `f(piece)`, of the same type, in the place of each piece.
   template <class F>
   sharded with_pieces(const F& f) const {
     sharded same = *this;

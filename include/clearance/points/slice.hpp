@@ -35,14 +35,14 @@ struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, s
   std::span<const std::byte> bytes() const
     requires copied_source<S>
   {
-    const std::span<const std::byte> all = whole.bytes();
+    const std::span<const std::byte> memory = whole.bytes();
     if constexpr (requires { whole.bytes(begin, begin); }) {
       const std::span<const std::byte> some = whole.bytes(begin, begin + count);
       if (some.empty()) return {};
-      const auto before = std::size_t(some.data() - all.data()) / 256 * 256;
-      return all.subspan(before, std::size_t(some.data() + some.size() - all.data()) - before);
+      const auto before = std::size_t(some.data() - memory.data()) / 256 * 256;
+      return memory.subspan(before, std::size_t(some.data() + some.size() - memory.data()) - before);
     }
-    return all;
+    return memory;
   }
   sliced at(const std::byte* copy) const
     requires copied_source<S>

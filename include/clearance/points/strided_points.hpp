@@ -20,8 +20,8 @@ struct strided_points {
 
   const std::byte* data = nullptr;
   std::size_t count = 0;
-  std::uint32_t step = 0;               ///< point_step, bytes.
-  std::uint32_t offset[3] = {0, 4, 8};  ///< of x, y and z within a record, bytes.
+  std::uint32_t step = 0;               ///< Bytes from one record to the next (ROS: point_step).
+  std::uint32_t offset[3] = {0, 4, 8};  ///< Where x, y and z begin in a record, bytes.
   std::uint32_t width = 0;              ///< Records per row, if rows are padded; 0: all records follow one another.
   std::size_t row_step = 0;             ///< Bytes from one row to the next, if `width` is not 0.
   vec3 origin = {0, 0, 0};              ///< Subtracted from doubles before they become floats.

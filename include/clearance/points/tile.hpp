@@ -12,7 +12,11 @@ namespace clearance {
 struct point_tile {
   alignas(64) real x[surveyed_points], y[surveyed_points], z[surveyed_points];
 
-  void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
+  void put(std::size_t j, vec3 p) {
+    x[j] = p.x;
+    y[j] = p.y;
+    z[j] = p.z;
+  }
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
 
   /// Reads `count` points: begin, begin + stride, ...; counts dropped ones, by reason. A `read_source` does this

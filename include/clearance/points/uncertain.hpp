@@ -12,7 +12,7 @@ namespace clearance {
 struct cloud_uncertainty {
   double shift = 0, turn = 0;  ///< By how much the sensor's pose may be wrong: metres, and radians about its (0,0,0).
   double max_speed = 0;        ///< No obstacle is faster, in m/s.
-  double age = 0;              ///< So old is the cloud, in seconds.
+  double age = 0;              ///< How old the cloud is, in seconds.
 };
 
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
@@ -43,7 +43,8 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
         turn(rounded_up(of.turn)),
         drift(rounded_up(of.max_speed * of.age)),
         spread(rounded_up(clearance::fma(1.5, rounding_of(source).relative, 1 + 0x1p-19))) {
-    detail::check_uncertain(of.shift, "a sensor's shift"), detail::check_uncertain(of.turn, "a sensor's turn");
+    detail::check_uncertain(of.shift, "a sensor's shift");
+    detail::check_uncertain(of.turn, "a sensor's turn");
     detail::check_uncertain(of.max_speed, "the obstacles' greatest speed");
     detail::check_uncertain(of.age, "a cloud's age");
     check();
@@ -57,7 +58,8 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
 
   /// See `rounding_of`.
   void check() const {
-    detail::check_uncertain(shift, "a sensor's shift"), detail::check_uncertain(turn, "a sensor's turn");
+    detail::check_uncertain(shift, "a sensor's shift");
+    detail::check_uncertain(turn, "a sensor's turn");
     detail::check_uncertain(drift, "speed times age");
     if constexpr (requires { noise.check(source.size()); }) noise.check(source.size());
   }
@@ -69,9 +71,9 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
     if (!bounded(radius(i, s.position))) s.dropped = drop_reason::too_close;
     return s;
   }
-  /// Or may the point be anywhere?
+  /// Does a radius bound where the point is? If not, the point may be anywhere.
   CLEARANCE_HD static bool bounded(real radius) { return radius < 1e6f; }
-  /// Of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
+  /// The radius of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
   CLEARANCE_HD real radius(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
     const real turned = capsule_source<S> ? 0 : length(seen), its = noise(i, seen);
@@ -86,7 +88,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
       return {p, {0, 0, 0}, radius(i, p)};
     }
   }
-  /// Point i is at p. What a turn adds along a capsule is in `rounding`.
+  /// What the radius of point i at p is made of. What a turn adds along a capsule is in `rounding`.
   CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
     const real turned = capsule_source<S> ? 0 : length(seen);
@@ -98,10 +100,10 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
                        std::uint32_t (&dropped)[drop_reasons]) const
     requires surveys
   {
-    std::uint32_t its[drop_reasons] = {};
-    if (!source.survey(begin, box, its)) return false;
-    if (its[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
-    if (!(box.lower.x <= box.upper.x)) {                         // no point
+    std::uint32_t dropped_now[drop_reasons] = {};
+    if (!source.survey(begin, box, dropped_now)) return false;
+    if (dropped_now[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
+    if (!(box.lower.x <= box.upper.x)) {                                 // no point
       widest = 0;
     } else {
       const vec3 sensor = sensor_of(source);
@@ -110,14 +112,16 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
     }
     if (!bounded(widest)) return false;
     ends = box;
-    for (int k = 0; k < drop_reasons; ++k) dropped[k] += its[k];
+    for (int k = 0; k < drop_reasons; ++k) dropped[k] += dropped_now[k];
     return true;
   }
   /// Another source with the same uncertainty, and a noise for each of its points.
   template <point_source Other, sensor_noise Its>
   uncertain<Other, Its> around_same(const Other& other, const Its& its) const {
     uncertain<Other, Its> same(other, its);
-    same.shift = shift, same.turn = turn, same.drift = drift;
+    same.shift = shift;
+    same.turn = turn;
+    same.drift = drift;
     return same;
   }
   /// Points `begin` to `end - 1`, each with its own radius.
@@ -126,7 +130,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   {
     return around_same(clearance::slice(source, begin, end), clearance::slice(noise, begin, end));
   }
-  /// Of a `sharded` source.
+  /// Piece k of a `sharded` source, with the same uncertainty.
   auto piece(std::size_t k) const
     requires sharded_source<S>
   {

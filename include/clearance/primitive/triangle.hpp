@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-/// Which place of a way (from + t along, 0 <= t <= 1) is nearest to another one: its t. In double, because nearly
+/// Which place of a way (from + t along, 0 <= t <= 1) is nearest to another way, as its t. In double, because nearly
 /// parallel ways lose half of the digits. (Lumelsky 1985.)
 CLEARANCE_HD inline real share_nearest(vec3 from, vec3 along, vec3 other_from, vec3 other_along) {
   struct way {
@@ -66,8 +66,8 @@ struct triangle {
 
   /// `distance` but for one root: see rootless_primitive.
   struct rootless {
-    real squared;  ///< Of the nearest side,
-    real inner;    ///< and of the nearest whose interior is nearest; NaN if the point does not project inside.
+    real squared;  ///< The squared distance to the nearest side.
+    real inner;    ///< The least square to a side whose interior is nearest; NaN: the point does not project inside.
     real noise, height;
 
     CLEARANCE_HD real distance(real root) const {
@@ -79,7 +79,8 @@ struct triangle {
     return {s.least.squared, choice(over_face(s), s.inner, not_a_number), s.noise, dot(s.aq, unit_normal)};
   }
 
-  /// Like `distance`, but rounded roughly, which it allows for. Only the sides' signs say whether q is over the face.
+  /// May the point be within reach? By rough distances, whose rounding is allowed for. Only the sides' signs say
+  /// whether q is over the face.
   CLEARANCE_HD bool may_reach(vec3 q, real reach) const {
     const vec3 ab = b - a, bc = c - b, ca = a - c;
     const vec3 aq = q - a, bq = q - b, cq = q - c;
@@ -115,7 +116,7 @@ struct triangle {
     return {{rough_min(rough_min(dot(u, aq), dot(u, bq)), dot(u, cq)) - off, u}, way.length + off, way.length};
   }
 
-  /// A ball around it, for quick tests.
+  /// A ball around the triangle, for quick tests.
   CLEARANCE_HD ball as_ball() const {
     const vec3 ab = b - a, ac = c - a, way{(ab.x + ac.x) / 3, (ab.y + ac.y) / 3, (ab.z + ac.z) / 3}, middle = a + way;
     const real square = rough_max(rough_max(dot(way, way), dot(ab - way, ab - way)), dot(ac - way, ac - way));
@@ -134,7 +135,10 @@ struct triangle {
                            share_nearest(from, along, c, a - c)};
     real best = 0, least = infinity;
     for (const real t : shares)
-      if (const real d = distance(fma(t, along, from)); d < least) best = t, least = d;
+      if (const real d = distance(fma(t, along, from)); d < least) {
+        best = t;
+        least = d;
+      }
     return best;
   }
 
@@ -151,8 +155,8 @@ struct triangle {
 
  private:
   struct measured {
-    vec3 offset;     ///< From the nearest point of the three sides to the query point,
-    real edge;       ///< and its length.
+    vec3 offset;     ///< From the nearest point of the three sides to the query point.
+    real edge;       ///< The length of `offset`.
     real height;     ///< Height above the plane.
     bool over_face;  ///< Does the query point surely project inside?
   };
@@ -181,7 +185,8 @@ struct triangle {
           noise(0x1p-22f * (extent(aq) + extent(ab) + extent(ca))),
           least(to_side<Rough, Looped>(aq, ab, noise)),
           inner(choice<Looped>(least.interior, least.squared, not_a_number)) {
-      add(to_side<Rough, Looped>(bq, bc, noise)), add(to_side<Rough, Looped>(cq, ca, noise));
+      add(to_side<Rough, Looped>(bq, bc, noise));
+      add(to_side<Rough, Looped>(cq, ca, noise));
     }
     CLEARANCE_HD void add(const side& s) {
       const bool nearer = s.squared < least.squared;

@@ -35,7 +35,8 @@ CLEARANCE_HD inline sine_cosine sine_cosine_of(double angle) {
   double s = -1.0 / 1307674368000, c = 1.0 / 20922789888000;
   for (int k = 0; k < 6; ++k) s = fma(s, rr, odd[k]);
   for (int k = 0; k < 7; ++k) c = fma(c, rr, even[k]);
-  s = fma(s * rr, r, r), c = fma(c, rr, 1.0);
+  s = fma(s * rr, r, r);
+  c = fma(c, rr, 1.0);
   switch (turns & 3) {
     case 0:
       return {s, c};
@@ -125,7 +126,9 @@ struct joint_chain_view {
     const position& a = link.axis;
     world_transform moved;
     if (link.slides) {
-      moved.m[0][3] = by * a.x, moved.m[1][3] = by * a.y, moved.m[2][3] = by * a.z;
+      moved.m[0][3] = by * a.x;
+      moved.m[1][3] = by * a.y;
+      moved.m[2][3] = by * a.z;
     } else {
       const auto [s, c] = sine_cosine_of(by);
       const double v = 1 - c, x = v * a.x, y = v * a.y, z = v * a.z, sx = s * a.x, sy = s * a.y, sz = s * a.z;

@@ -51,10 +51,12 @@ concept robot = !rigid_part<Robot> && (requires(const Robot r) {
 } || requires(const Robot r) { r.view().facts; });
 template <robot Robot>
 auto view_of(const Robot& r) {
-  if constexpr (requires { r.view(); })
+  if constexpr (requires { r.view(); }) {
     return r.view();
-  else
-    return check(r), r;
+  } else {
+    check(r);
+    return r;
+  }
 }
 
 /// A robot, or a part, that owns what a view of it looks at. Of a temporary one nothing can be made that is asked
@@ -118,9 +120,13 @@ class model {
   }
   model(model&&) = default;
   model& operator=(model other) {
-    std::swap(parts_, other.parts_), std::swap(facts_, other.facts_), std::swap(views_, other.views_);
-    std::swap(depth_, other.depth_), std::swap(width_, other.width_);
-    std::swap(fields_, other.fields_), std::swap(field_views_, other.field_views_);
+    std::swap(parts_, other.parts_);
+    std::swap(facts_, other.facts_);
+    std::swap(views_, other.views_);
+    std::swap(depth_, other.depth_);
+    std::swap(width_, other.width_);
+    std::swap(fields_, other.fields_);
+    std::swap(field_views_, other.field_views_);
     return *this;
   }
 
@@ -146,8 +152,12 @@ class model {
     std::vector<field_view> views;
     for (const auto& f : fields)
       if (!f.empty()) views.push_back(f.view());
-    if (views.size() != parts_.size()) fields.clear(), views.clear();
-    fields_ = std::move(fields), field_views_ = on.copy_in(std::span<const field_view>(views));
+    if (views.size() != parts_.size()) {
+      fields.clear();
+      views.clear();
+    }
+    fields_ = std::move(fields);
+    field_views_ = on.copy_in(std::span<const field_view>(views));
   }
 
   /// A copy where `other` runs.

@@ -65,7 +65,10 @@ inline ball enclosing_ball(std::span<const ball> balls) {
   double lo[3] = {infinity, infinity, infinity}, hi[3] = {-infinity, -infinity, -infinity};
   for (const ball& b : balls) {
     const double c[3] = {b.center.x, b.center.y, b.center.z};
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], c[k] - b.radius), hi[k] = std::max(hi[k], c[k] + b.radius);
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], c[k] - b.radius);
+      hi[k] = std::max(hi[k], c[k] + b.radius);
+    }
   }
   const vec3 center{to_float((lo[0] + hi[0]) / 2), to_float((lo[1] + hi[1]) / 2), to_float((lo[2] + hi[2]) / 2)};
   double radius = 0;
@@ -163,7 +166,8 @@ void check_tree(const bvh<V, P>& tree) {
 template <bounding_volume V, primitive P>
 part<bvh<V, P>> make_part(bvh<V, P> tree, double gap = 0, double tolerance = 0) {
   detail::check_tree(tree);
-  check_length(gap, "the gap of a part"), check_length(tolerance, "the tolerance of a part");
+  check_length(gap, "the gap of a part");
+  check_length(tolerance, "the tolerance of a part");
   const ball around = enclosing_ball(std::span<const P>(tree.primitives));
   return {std::move(tree), {}, {around.center, around.radius, rounded_up(gap), rounded_up(tolerance)}};
 }

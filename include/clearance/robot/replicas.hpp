@@ -33,7 +33,8 @@ class replicas {
       : replicas(other.each_) {}
   replicas(replicas&&) = default;
   replicas& operator=(replicas other) {
-    std::swap(each_, other.each_), std::swap(views_, other.views_);
+    std::swap(each_, other.each_);
+    std::swap(views_, other.views_);
     return *this;
   }
 

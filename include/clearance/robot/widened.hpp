@@ -55,7 +55,8 @@ class widened_model {
   model_view<PartView> operator()(std::span<const double> radii) {
     check_radii(radii, model_.size());
     if (radii.empty() || model_.size() == 0) return model_;
-    facts_.clear(), tolerances_.clear();
+    facts_.clear();
+    tolerances_.clear();
     for (std::size_t k = 0; k < model_.size(); ++k) {
       facts_.push_back(widened(model_.facts[k], radius_of(radii, k)));
       tolerances_.push_back(facts_.back().tolerance);

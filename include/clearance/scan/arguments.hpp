@@ -16,9 +16,8 @@ template <class Place>
 struct record {
   distance_key key = no_key;
   std::uint32_t part = none;
-  std::uint32_t id =
-      none;          ///< The primitive's number in the user's array (none: the point is inside, no primitive is known),
-  Place place = {};  ///< and where in the tree it is.
+  std::uint32_t id = none;  ///< The primitive's number in the user's array; none: the point is inside, none is known.
+  Place place = {};         ///< Where in the tree the primitive is.
 };
 
 /// Lexicographic: distance, point, part, primitive.
@@ -34,11 +33,10 @@ CLEARANCE_HD bool same(const record<Place>& a, const record<Place>& b) {
   return a.key == b.key && a.part == b.part && a.id == b.id;
 }
 
-inline constexpr std::uint32_t most_parts = 128;   ///< Parts in one kernel.
-inline constexpr std::uint32_t inline_parts = 12;  ///< As many parts travel with the launch.
-inline constexpr std::uint32_t most_children = 8;  ///< Children of a node,
-inline constexpr std::uint32_t deepest_stack =
-    64;  ///< and entries of a tree's depth-first stack. Trees from `build` keep to both.
+inline constexpr std::uint32_t most_parts = 128;    ///< Parts in one kernel.
+inline constexpr std::uint32_t inline_parts = 12;   ///< How many parts travel with the launch.
+inline constexpr std::uint32_t most_children = 8;   ///< Children of a node of a tree from `build`.
+inline constexpr std::uint32_t deepest_stack = 64;  ///< Entries of the depth-first stack of a tree from `build`.
 inline constexpr std::uint32_t most_width = most_children << 15;  ///< Children of a node of any other tree.
 inline constexpr std::uint32_t cluster = 8;  ///< Parts that are first tested together, as one ball.
 inline constexpr std::uint32_t most_clusters = most_parts / cluster;
@@ -78,13 +76,13 @@ struct alignas(16) frame_parts_of {
       low = {min(low.x, at.x), min(low.y, at.y), min(low.z, at.z)};
       high = {max(high.x, at.x), max(high.y, at.y), max(high.z, at.z)};
     }
-    ball all{{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, 0};
+    ball around{{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, 0};
     for (std::uint32_t k = begin; k < end; ++k) {
       const ball& b = part[k].root.around;
-      part[k].away = (length(b.center - all.center) + b.radius) * (1 + 8 * slack);
-      all.radius = max(all.radius, part[k].away);
+      part[k].away = (length(b.center - around.center) + b.radius) * (1 + 8 * slack);
+      around.radius = max(around.radius, part[k].away);
     }
-    cluster[c] = frames::root_ball(all);
+    cluster[c] = frames::root_ball(around);
   }
 };
 
@@ -105,15 +103,15 @@ struct alignas(16) scan_head {
 
   std::uint32_t points, parts;
   std::uint32_t cloud, first;   ///< The cloud's number, and that of its first point among all clouds' points.
-  std::uint32_t rounds;         ///< Rounds until some block has read every point;
-  std::uint32_t ahead;          ///< and how many of them are read a round ahead.
+  std::uint32_t rounds;         ///< Rounds until some block has read every point.
+  std::uint32_t ahead;          ///< How many rounds are read a round ahead.
   std::uint32_t top_stride;     ///< How many first nodes of each tree shared memory has room for.
   bool last;                    ///< No cloud follows: conclude.
-  bool far;                     ///< All parts are in `rest`,
-  bool placed;                  ///< and so is the frame.
+  bool far;                     ///< All parts are in `rest`.
+  bool placed;                  ///< The frame is in `rest`.
   std::uint32_t columns;        ///< Columns of an image whose tiles are packets; or 0.
-  std::uint32_t overflow_room;  ///< Entries in `overflow` for each warp, and after those for each block,
-  std::byte* overflow;          ///< for trees that are too deep or wide for stacks in shared memory; or null.
+  std::uint32_t overflow_room;  ///< Entries in `overflow` for each warp, and after those for each block.
+  std::byte* overflow;          ///< Stacks for trees that are too deep or wide for shared memory; or null.
   scan_state* state;
   const part_type* views;
   const placed_parts* rest;

@@ -71,7 +71,7 @@ struct alignas(16) pending {
 };
 
 inline constexpr std::uint32_t pair_capacity = 1024;
-inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Of a warp.
+inline constexpr std::uint32_t stack_capacity = 3 * deepest_stack;  ///< Entries of a warp's stack.
 
 /// The first nodes of every tree, in `Bytes` bytes, for trees in arrays.
 template <hierarchy H, std::size_t Bytes>
@@ -95,9 +95,11 @@ struct block_memory {
   scan_head<Tally> head;
   typename Tally::memory answer;
   std::uint32_t dropped[drop_reasons];
-  std::uint32_t last;       ///< Not 0 if this is the last block to finish.
-  alignas(16) vec3 origin;  ///< Subtracted from points if it is not 0 (`shifted`). It is read as sixteen bytes, with
-  bool rigid, shifted;      ///< these, which no thread writes any more by then.
+  std::uint32_t last;  ///< Not 0 if this is the last block to finish.
+  /// Subtracted from points if it is not 0, which `shifted` says. Sixteen bytes are read at once, the origin and the
+  /// two members after it, which no thread writes any more by then.
+  alignas(16) vec3 origin;
+  bool rigid, shifted;
   frames::root_test near_cluster[most_clusters], near_part[most_parts];
   frames::root_ball cluster[most_clusters];
   tree_tops<hierarchy_type, Tally::top_bytes> tops;

@@ -26,7 +26,8 @@ struct alignas(64) boxed_piece {
     box.add(s.position);
     if constexpr (capsule_source<S>) {
       const capsule c = source.around(i, s.position);
-      box.add(c.at(1)), wide = max(wide, c.radius + clearance::detail::noise_along(c));
+      box.add(c.at(1));
+      wide = max(wide, c.radius + clearance::detail::noise_along(c));
     }
   }
   CLEARANCE_HD void add(const extent& more, const std::uint32_t (&drops)[drop_reasons]) {
@@ -38,7 +39,7 @@ struct alignas(64) boxed_piece {
     add(other.box, other.dropped);
     wide = max(wide, other.wide);
   }
-  /// Its box less an origin.
+  /// The piece's box less an origin.
   extent box_from(vec3 origin) const { return {box.lower - origin, box.upper - origin}; }
 };
 static_assert(sizeof(boxed_piece) == 64);

@@ -114,14 +114,14 @@ struct cell_pairs : pair_elements<Tally> {
   /// if the pair has to walk its part's tree.
   static __device__ bool look_up(bool live, std::uint32_t i, std::uint32_t part, vec3 q) {
     memory& s = frame::here();
-    const cells_view& its = frame::view(part).cells;
+    const cells_view& cells = frame::view(part).cells;
     cell_leaf leaf;
-    if (live) leaf = its(q);
+    if (live) leaf = cells(q);
     const std::uint32_t count = leaf.node.kind == cell_kind::list ? leaf.node.count : 0;
 #pragma unroll 1
     for (std::uint32_t k = lane();; k += mates) {  // the nearest to the middle first
       cell_candidate c{none, infinity, infinity};
-      if (k < count) c = its.candidate(leaf, k);
+      if (k < count) c = cells.candidate(leaf, k);
       const real reach = Tally::reach_of_pair(s, part, i);
       if (__all_sync(all_lanes, k >= count || c.rest > reach)) break;
       typename Tally::record r;

@@ -64,6 +64,7 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
   typename Steps::node_type n{};
   if (live) n = steps.root();
   bool inner = live && !steps.is_leaf(n);
+
   while (team.any(inner)) {
     const std::uint32_t size = inner ? steps.size(n) : 0;
     typename Steps::node_type best = n;
@@ -73,14 +74,19 @@ CLEARANCE_HD typename Steps::node_type nearest_leaf(const Steps& steps, vec3 q, 
       const auto step = steps.child(n, j);
       const real lb = traits::lower_bound(step.volume, q);
       others.passed(lb < least ? least : lb);
-      if (lb < least) least = lb, best = step.node;
+      if (lb < least) {
+        least = lb;
+        best = step.node;
+      }
     }
+
     const real nearest = team.least(least);
     const int winner = team.first(least < infinity && least == nearest);
     if (!team.is(winner)) others.passed(least);
     best = team.from(winner, best);
     if (inner) {
-      live = winner >= 0 && others.wants(nearest), n = best;
+      live = winner >= 0 && others.wants(nearest);
+      n = best;
       inner = live && !steps.is_leaf(n);
     }
   }

@@ -18,7 +18,7 @@ CLEARANCE_HD auto element_of(const S& s, std::size_t i, vec3 p) {
     return p;
 }
 
-/// The same less an origin; `x` is s[i].position less it. Everything measures this one.
+/// The element less an origin; `x` is s[i].position less the origin. Distances are measured to this one.
 template <point_source S>
 CLEARANCE_HD auto element_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
   if constexpr (capsule_source<S>) {
@@ -127,7 +127,7 @@ template <primitive P, visitor Q>
 CLEARANCE_HD void offer_for(std::uint32_t id, const P& primitive, const capsule& q, Q& ask) {
   of_capsule<Q>{ask, q}.offer(id, 0, primitive);
 }
-/// or those of a leaf.
+/// Offers the primitives of a leaf.
 template <hierarchy H, visitor Q>
 CLEARANCE_HD void offer_leaf_for(const H& tree, const typename H::node_type leaf, vec3 q, Q& ask) {
   offer_leaf(tree, leaf, q, ask);

@@ -45,10 +45,10 @@ __device__ void shift(quad_points& p) {
 }
 
 /// Where a warp has stopped because there was no room. If `clusters` is not 0, it stopped in the last of so many
-/// clusters, and `those` pairs with this lane's points are still to be handed over.
+/// clusters, and `pairs`, a bit for each part and point of this lane, are still to be handed over.
 struct unfinished {
   std::uint32_t clusters = 0;
-  unsigned those = ~0u;
+  unsigned pairs = ~0u;
 };
 
 /// Hands over four points to the search, pair by pair, with the parts of all clusters, or with those that were `left`.
@@ -59,20 +59,22 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
   const auto& s = pairs::here();
   constexpr bool points = std::is_same_v<typename pairs::element, vec3>;
   real square[quad];
-  typename pairs::root_element all[quad];
+  typename pairs::root_element elements[quad];
 #pragma unroll
   for (int j = 0; j < quad; ++j) {
     if constexpr (points)
       square[j] = -dot(p.at[j], p.at[j]);
     else
-      all[j] = pairs::root_element_at(first() + j, p.at[j], (p.reasons >> 8 * j & 0xff) == 0);
+      elements[j] = pairs::root_element_at(first() + j, p.at[j], (p.reasons >> 8 * j & 0xff) == 0);
   }
+
   const auto passes = [&](const frames::root_test& test, int j) {
     if constexpr (points)
       return test.value(p.at[j]) <= square[j];
     else
-      return test.passes(all[j]);
+      return test.passes(elements[j]);
   };
+
   for (std::uint32_t c = left.clusters == 0 ? 0 : left.clusters - 1; c < clusters; ++c) {
     const frames::root_test together = s.near_cluster[c];
     bool near = false;
@@ -81,22 +83,26 @@ __device__ bool hand_over(const quad_points& p, Index first, std::uint32_t clust
     if (__any_sync(all_lanes, near)) {
       const frames::root_test* const near_part = s.near_part + c * cluster;
       const std::uint32_t parts = s.head.parts - c * cluster;
-      unsigned those = 0;  // one bit per part and point
+      unsigned near_pairs = 0;  // one bit per part and point
 #pragma unroll
       for (std::uint32_t k = 0; k < cluster; ++k) {
         if (k >= parts) break;
         const frames::root_test test = near_part[k];
 #pragma unroll
-        for (int j = 0; j < quad; ++j) those |= unsigned(passes(test, j)) << (quad * k + j);
+        for (int j = 0; j < quad; ++j) near_pairs |= unsigned(passes(test, j)) << (quad * k + j);
       }
+
 #pragma unroll
       for (int j = 0; j < quad; ++j)
-        if ((p.reasons >> 8 * j & 0xff) != 0) those &= ~(0x11111111u << j);
-      those &= left.those;
-      if (those != 0) those = pairs::add(those, p, first(), c * cluster);
-      if (__any_sync(all_lanes, those != 0)) return left = {c + 1, those}, false;
+        if ((p.reasons >> 8 * j & 0xff) != 0) near_pairs &= ~(0x11111111u << j);
+      near_pairs &= left.pairs;
+      if (near_pairs != 0) near_pairs = pairs::add(near_pairs, p, first(), c * cluster);
+      if (__any_sync(all_lanes, near_pairs != 0)) {
+        left = {c + 1, near_pairs};
+        return false;
+      }
     }
-    left.those = ~0u;
+    left.pairs = ~0u;
   }
   left.clusters = 0;
   return true;

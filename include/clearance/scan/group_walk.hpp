@@ -32,8 +32,8 @@ struct side_by_side {
   alignas(64) real word[words][Lanes];
 
   void put(std::size_t j, const T& value) {
-    const one its = std::bit_cast<one>(value);
-    for (std::size_t w = 0; w < words; ++w) word[w][j] = its[w];
+    const one parts = std::bit_cast<one>(value);
+    for (std::size_t w = 0; w < words; ++w) word[w][j] = parts[w];
   }
   T operator[](std::size_t j) const { return at(j, std::make_index_sequence<words>{}); }
 
@@ -44,14 +44,14 @@ struct side_by_side {
   }
 };
 
-/// The same for what is not made of words.
+/// Values that are not made of words lie where they are, and are only pointed to.
 template <class T, std::size_t Lanes>
   requires(!std::is_trivially_copyable_v<T> || sizeof(T) % sizeof(real) != 0)
 struct side_by_side<T, Lanes> {
-  const T* its[Lanes];
+  const T* value_at[Lanes];
 
-  void put(std::size_t j, const T& value) { its[j] = &value; }
-  const T& operator[](std::size_t j) const { return *its[j]; }
+  void put(std::size_t j, const T& value) { value_at[j] = &value; }
+  const T& operator[](std::size_t j) const { return *value_at[j]; }
 };
 
 // Points on a host that lie together. Loops over them become vector code.
@@ -69,7 +69,10 @@ struct neighbours : packet<64> {
   }
   /// After the last point.
   void fill() {
-    for (std::size_t j = count; j < most; ++j) put(j, (*this)[0], -infinity), part[j] = primitive[j] = none;
+    for (std::size_t j = count; j < most; ++j) {
+      put(j, (*this)[0], -infinity);
+      part[j] = primitive[j] = none;
+    }
   }
   real reach() const {
     real largest = -infinity;
@@ -82,13 +85,15 @@ struct neighbours : packet<64> {
     const auto first = int(k < part[j]) | (int(k == part[j]) & int(id < primitive[j]));
     const bool nearer = bool(int(distance < within[j]) | (int(distance == within[j]) & first));
     within[j] = choice(nearer, distance, within[j]);
-    part[j] = nearer ? k : part[j], primitive[j] = nearer ? id : primitive[j];
+    part[j] = nearer ? k : part[j];
+    primitive[j] = nearer ? id : primitive[j];
   }
 
   /// The box around them, without noise.
   surroundings surround() const {
     extent box;
-    spread(x, box.lower.x, box.upper.x, most), spread(y, box.lower.y, box.upper.y, most);
+    spread(x, box.lower.x, box.upper.x, most);
+    spread(y, box.lower.y, box.upper.y, most);
     spread(z, box.lower.z, box.upper.z, most);
     const vec3 c = fma(0.5f, box.lower + box.upper, vec3{0, 0, 0});
     alignas(64) real far[block] = {};
@@ -99,12 +104,12 @@ struct neighbours : packet<64> {
       }
     for (const real f : far) far[0] = max(far[0], f);
     const auto half = [](real low, real high, real middle) { return max(high - middle, middle - low) * (1 + slack); };
-    surroundings all{};
-    all.middle = c;
-    all.half = {half(box.lower.x, box.upper.x, c.x), half(box.lower.y, box.upper.y, c.y),
-                half(box.lower.z, box.upper.z, c.z)};
-    all.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
-    return all;
+    surroundings around{};
+    around.middle = c;
+    around.half = {half(box.lower.x, box.upper.x, c.x), half(box.lower.y, box.upper.y, c.y),
+                   half(box.lower.z, box.upper.z, c.z)};
+    around.radius = square_root(far[0]) * (1 + 4 * slack) + real(vanishing);
+    return around;
   }
 
   /// Tests primitive `id` of part k exactly, block by block, where its tangent `bound` at the middle says that it may
@@ -113,33 +118,37 @@ struct neighbours : packet<64> {
   void test(const surroundings& from, const tangent& bound, const rigid_transform& place, const P& which,
             std::uint32_t k, std::uint32_t id, std::uint64_t inside) {
     with_vectors([&] {
-      const surroundings all = from;
+      const surroundings around = from;
       const tangent t = bound;
       const rigid_transform part_from_cloud = place;
-      const P its = which;
-      const std::uint32_t its_part = k, its_id = id;
+      const P tested = which;
+      const std::uint32_t part_number = k, primitive_id = id;
       neighbours& n = *this;
+
       for (std::size_t b = 0; b < n.count; b += block) {
         std::uint32_t any = 0;
         for (std::size_t j = b; j < b + block; ++j)
-          any |= std::uint32_t(all.may_reach(t.distance, t.direction, n[j] - all.middle, n.within[j]));
+          any |= std::uint32_t(around.may_reach(t.distance, t.direction, n[j] - around.middle, n.within[j]));
         if (any == 0) continue;
+
         alignas(64) real distance[block];
         if constexpr (rootless_primitive<P>) {
-          side_by_side<decltype(its.before_root(n[0])), block> before;
+          side_by_side<decltype(tested.before_root(n[0])), block> before;
           alignas(64) real square[block], root[block];
           for (std::size_t l = 0; l < block; ++l) {
-            const auto half = its.before_root(part_from_cloud(n[b + l]));
-            before.put(l, half), square[l] = half.squared;
+            const auto half = tested.before_root(part_from_cloud(n[b + l]));
+            before.put(l, half);
+            square[l] = half.squared;
           }
           square_roots<block>(square, root);
           for (std::size_t l = 0; l < block; ++l) distance[l] = before[l].distance(root[l]);
         } else {
-          for (std::size_t l = 0; l < block; ++l) distance[l] = its.distance(part_from_cloud(n[b + l]));
+          for (std::size_t l = 0; l < block; ++l) distance[l] = tested.distance(part_from_cloud(n[b + l]));
         }
+
         for (std::size_t l = 0; inside != 0 && l < block; ++l)
           if ((inside >> (b + l) & 1) != 0) distance[l] = not_a_number;
-        for (std::size_t l = 0; l < block; ++l) n.offer(b + l, distance[l], its_part, its_id);
+        for (std::size_t l = 0; l < block; ++l) n.offer(b + l, distance[l], part_number, primitive_id);
       }
     });
   }
@@ -158,22 +167,24 @@ class group_walk {
     near.fill();
     real gap = infinity;
     with_vectors([&] {
-      all_ = near.surround();
+      around_ = near.surround();
       for (const std::uint32_t k : parts) {
-        const vec3 q = places_[k].part_from_cloud(all_.middle);
-        const seen_part seen(all_, places_[k].around, q);
-        seen_[k] = {q, unit_way(all_.middle - places_[k].around.center).direction, seen.distance};
-        gap = min(gap, seen.distance), all_.noise = max(all_.noise, seen.noise);
+        const vec3 q = places_[k].part_from_cloud(around_.middle);
+        const seen_part seen(around_, places_[k].around, q);
+        seen_[k] = {q, unit_way(around_.middle - places_[k].around.center).direction, seen.distance};
+        gap = min(gap, seen.distance);
+        around_.noise = max(around_.noise, seen.noise);
       }
     });
     const real wide = 0.02f + 0.1f * max(gap, 0);
-    return all_.radius <= wide && all_.noise <= wide && gap < 1e15f;
+    return around_.radius <= wide && around_.noise <= wide && gap < 1e15f;
   }
 
   /// Searches `parts` for what is nearest to points that lie together.
   void search(neighbours& near, const std::vector<std::uint32_t>& parts) {
-    all_.best = {}, all_.within = infinity;
-    all_.set_limit(near.reach());
+    around_.best = {};
+    around_.within = infinity;
+    around_.set_limit(near.reach());
     inner_.clear();
     if (std::ranges::find(parts, hint_.part) != parts.end()) {
       add(hint_);
@@ -187,7 +198,7 @@ class group_walk {
       }
       const pending e = nodes_.back();
       nodes_.pop_back();
-      if (all_.keeps(e.distance, e.direction)) open(e, near);
+      if (around_.keeps(e.distance, e.direction)) open(e, near);
     }
     measure(near);
   }
@@ -214,9 +225,9 @@ class group_walk {
     std::uint32_t keeps;  ///< One bit each.
   };
   static std::uint32_t together(const std::uint32_t (&bits)[8]) {
-    std::uint32_t all = 0;
-    for (const std::uint32_t b : bits) all |= b;
-    return all;
+    std::uint32_t joined = 0;
+    for (const std::uint32_t b : bits) joined |= b;
+    return joined;
   }
   struct candidate {
     real distance;
@@ -229,22 +240,22 @@ class group_walk {
     for (const std::uint32_t k : parts) {
       const real d = seen_[k].distance;
       if constexpr (has_interior<PartView>)
-        if (d <= all_.radius + all_.noise) find_inside(near, k);
-      if (d <= all_.limit) nodes_.push_back({d, seen_[k].way, k, parts_[k].tree.nodes[0]});
+        if (d <= around_.radius + around_.noise) find_inside(near, k);
+      if (d <= around_.limit) nodes_.push_back({d, seen_[k].way, k, parts_[k].tree.nodes[0]});
     }
     std::sort(nodes_.begin(), nodes_.end(), [](const pending& a, const pending& b) { return a.distance > b.distance; });
   }
   void find_inside(neighbours& near, std::uint32_t k) {
-    std::uint64_t those = 0;
+    std::uint64_t inside = 0;
     with_vectors([&] {
       for (std::size_t j = 0; j < near.count; ++j)
         if (frames::may_reach(places_[k].around, 0, near[j]) &&
             parts_[k].interior.inside(places_[k].part_from_cloud(near[j]))) {
-          those |= std::uint64_t(1) << j;
+          inside |= std::uint64_t(1) << j;
           if (near.within[j] >= 0) near.offer(j, 0, k, none);
         }
     });
-    if (those != 0) inner_.emplace_back(k, those);
+    if (inside != 0) inner_.emplace_back(k, inside);
   }
 
   /// Looks at a node's children.
@@ -254,11 +265,11 @@ class group_walk {
     if (e.node.is_leaf()) return take_all(e, near);
     for (std::uint32_t first = 0; first < e.node.count(); first += 8) {
       const std::uint32_t at = e.node.first + first, count = std::min(8u, e.node.count() - first);
-      tangents its;
-      see(tree.volumes + at, count, e.part, its);
-      for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+      tangents seen;
+      see(tree.volumes + at, count, e.part, seen);
+      for (std::uint32_t left = seen.keeps; left != 0; left &= left - 1) {
         const auto j = std::uint32_t(std::countr_zero(left));
-        const pending child{its.distance[j], {its.x[j], its.y[j], its.z[j]}, e.part, tree.nodes[at + j]};
+        const pending child{seen.distance[j], {seen.x[j], seen.y[j], seen.z[j]}, e.part, tree.nodes[at + j]};
         if (child.node.is_leaf()) {
           take_all(child, near);
           continue;
@@ -270,23 +281,26 @@ class group_walk {
       }
     }
   }
-  void see(const volume_type* volumes, std::uint32_t count, std::uint32_t k, tangents& its) const {
+  void see(const volume_type* volumes, std::uint32_t count, std::uint32_t k, tangents& seen) const {
     with_vectors([&] {
-      side_by_side<volume_type> here;
-      for (std::uint32_t j = 0; j < 8; ++j) here.put(j, volumes[std::min(j, count - 1)]);
-      const surroundings all = all_;
+      side_by_side<volume_type> tested;
+      for (std::uint32_t j = 0; j < 8; ++j) tested.put(j, volumes[std::min(j, count - 1)]);
+      const surroundings points = around_;
       const rigid_transform part_from_cloud = places_[k].part_from_cloud;
       const vec3 q = seen_[k].q;
       tangents found;
       alignas(32) std::uint32_t keeps[8];
       for (std::size_t j = 0; j < 8; ++j) {
-        const tangent t = traits::tangent_at(here[j], q);
+        const tangent t = traits::tangent_at(tested[j], q);
         const vec3 u = to_cloud(part_from_cloud, t.direction);
-        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
-        keeps[j] = std::uint32_t(all.keeps(t.distance, u)) << j;
+        found.distance[j] = t.distance;
+        found.x[j] = u.x;
+        found.y[j] = u.y;
+        found.z[j] = u.z;
+        keeps[j] = std::uint32_t(points.keeps(t.distance, u)) << j;
       }
       found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
-      its = found;
+      seen = found;
     });
   }
 
@@ -303,66 +317,81 @@ class group_walk {
     batch_.place[batch_.count] = p.place;
     batch_.primitives.put(batch_.count++, parts_[p.part].tree.primitives[p.place]);
   }
-  /// Looks at those that wait. `finds`: what may be nearest to a point becomes a candidate.
+  /// Looks at the primitives that wait. `finds`: what may be nearest to a point becomes a candidate.
   void examine(bool finds, neighbours& near) {
     const std::uint32_t k = batch_.part, count = batch_.count;
     for (std::uint32_t j = count; j < 8; ++j) batch_.primitives.put(j, parts_[k].tree.primitives[batch_.place[0]]);
-    tangents its;
+    tangents seen;
     std::uint32_t nearest = none;
     with_vectors([&] {
-      surroundings all = all_;
+      surroundings points = around_;
       const rigid_transform part_from_cloud = places_[k].part_from_cloud;
       const vec3 q = seen_[k].q;
       tangents found;
       alignas(32) real most[8], bound[8], radius[8];
-      const auto& here = batch_.primitives;
+      const auto& waiting = batch_.primitives;
+
       for (std::size_t j = 0; j < 8; ++j) {
-        const primitive_tangent t = here[j].tangent_at(q);
+        const primitive_tangent t = waiting[j].tangent_at(q);
         const vec3 u = to_cloud(part_from_cloud, t.direction);
-        found.distance[j] = t.distance, found.x[j] = u.x, found.y[j] = u.y, found.z[j] = u.z;
-        most[j] = t.most, radius[j] = t.radius;
-        bound[j] = yardstick(t, u, all.radius).most;
+        found.distance[j] = t.distance;
+        found.x[j] = u.x;
+        found.y[j] = u.y;
+        found.z[j] = u.z;
+        most[j] = t.most;
+        radius[j] = t.radius;
+        bound[j] = yardstick(t, u, points.radius).most;
       }
+
       for (std::uint32_t j = 0; j < count; ++j)
-        if (bound[j] < all.best.most) {
+        if (bound[j] < points.best.most) {
           const vec3 u{found.x[j], found.y[j], found.z[j]};
-          all.best = yardstick({{found.distance[j], u}, most[j], radius[j]}, u, all.radius);
-          all.within = most[j] + all.radius, nearest = j;
-          if constexpr (has_interior<PartView>) all.best.raise_to_zero(all.half), all.within = max(all.within, 0);
+          points.best = yardstick({{found.distance[j], u}, most[j], radius[j]}, u, points.radius);
+          points.within = most[j] + points.radius;
+          nearest = j;
+          if constexpr (has_interior<PartView>) {
+            points.best.raise_to_zero(points.half);
+            points.within = max(points.within, 0);
+          }
         }
       if (nearest != none) {
-        all.limit = min(all.limit, all.within + all.radius + all.noise);
-        all_ = all;
+        points.limit = min(points.limit, points.within + points.radius + points.noise);
+        around_ = points;
       }
+
       alignas(32) std::uint32_t keeps[8];
       for (std::size_t j = 0; j < 8; ++j)
-        keeps[j] = std::uint32_t(all.keeps(found.distance[j], {found.x[j], found.y[j], found.z[j]})) << j;
+        keeps[j] = std::uint32_t(points.keeps(found.distance[j], {found.x[j], found.y[j], found.z[j]})) << j;
       found.keeps = together(keeps) & ((2u << (count - 1)) - 1);
-      its = found;
+      seen = found;
     });
+
     if (nearest != none) hint_ = {k, batch_.place[nearest]};
     batch_.count = 0;
     if (!finds) return;
-    for (std::uint32_t left = its.keeps; left != 0; left &= left - 1) {
+    for (std::uint32_t left = seen.keeps; left != 0; left &= left - 1) {
       const auto j = std::uint32_t(std::countr_zero(left));
-      candidates_.push_back({its.distance[j], {its.x[j], its.y[j], its.z[j]}, {k, batch_.place[j]}});
+      candidates_.push_back({seen.distance[j], {seen.x[j], seen.y[j], seen.z[j]}, {k, batch_.place[j]}});
     }
-    if (candidates_.size() >= most_candidates) measure(near), all_.set_limit(near.reach());
+    if (candidates_.size() >= most_candidates) {
+      measure(near);
+      around_.set_limit(near.reach());
+    }
   }
 
   /// Each point tests the candidates that it may be nearest to, first the nearest to the middle.
   void measure(neighbours& near) {
-    std::erase_if(candidates_, [&](const candidate& c) { return !all_.keeps(c.distance, c.direction); });
+    std::erase_if(candidates_, [&](const candidate& c) { return !around_.keeps(c.distance, c.direction); });
     std::sort(candidates_.begin(), candidates_.end(),
               [](const candidate& a, const candidate& b) { return a.distance < b.distance; });
     for (const candidate& c : candidates_) {
       const auto& [k, place] = c.which;
       std::uint64_t inside = 0;
-      for (const auto& [part, those] : inner_)
-        if (part == k) inside = those;
+      for (const auto& [part, bits] : inner_)
+        if (part == k) inside = bits;
       const hierarchy& tree = parts_[k].tree;
-      near.test(all_, {c.distance, c.direction}, places_[k].part_from_cloud, tree.primitives[place], k, tree.ids[place],
-                inside);
+      near.test(around_, {c.distance, c.direction}, places_[k].part_from_cloud, tree.primitives[place], k,
+                tree.ids[place], inside);
     }
     candidates_.clear();
   }
@@ -370,7 +399,7 @@ class group_walk {
 
   const PartView* parts_;
   std::span<const frames::placement> places_;
-  surroundings all_;
+  surroundings around_;
   std::vector<seen_middle> seen_;  ///< By part.
   std::vector<pending> nodes_;
   std::vector<candidate> candidates_;

@@ -90,11 +90,16 @@ __global__ void __launch_bounds__(block_threads, 2)
   typename Tally::seeds before(a);
   const cards<Tally> all(rounds);
   point_reader<Source, Tally> reader(source, ahead, all);
-  pairs::prepare(a, [&] { reader.fetch(0), before.seed_from(a, source); });
+
+  pairs::prepare(a, [&] {
+    reader.fetch(0);
+    before.seed_from(a, source);
+  });
   before.seed(a);
   __syncthreads();
   std::uint32_t bound = Tally::seeds::found(a.parts);
   pairs::fetch_tops(a.parts);
+
   const bool cold = bound == no_bound;
   if (cold && rounds > 0) {
     __pipeline_wait_prior(0);
@@ -105,6 +110,7 @@ __global__ void __launch_bounds__(block_threads, 2)
     __syncthreads();
     bound = Tally::common_bound(s);
   }
+
   // Everything that these loops call is inlined: what lives across a call would be kept in memory, for every point. A
   // warp that finds no room for a pair stops, and goes on from there when the table of pairs is empty.
   drop_counter dropped;
@@ -115,6 +121,7 @@ __global__ void __launch_bounds__(block_threads, 2)
     __syncthreads();
     const bool shifted = s.shifted;
     if (!crowd) end = rounds - end < batch ? rounds : end + batch;
+
 #pragma unroll 1
     for (; r < end; ++r) {
       const bool again = left.clusters != 0;
@@ -128,6 +135,7 @@ __global__ void __launch_bounds__(block_threads, 2)
       if (shifted) shift<Tally>(p);
       if (!hand_over<Tally>(p, [&] { return all.index(r); }, clusters, left)) break;
     }
+
     __pipeline_wait_prior(0);  // the tops have arrived
     dropped.report(s.dropped);
     __syncthreads();
@@ -137,6 +145,7 @@ __global__ void __launch_bounds__(block_threads, 2)
     bound = Tally::common_bound(s);
     batch = rounds_of_batch(found, pair_capacity);
   }
+
   if (rounds == 0) __pipeline_wait_prior(0);
   finish_block<Tally>(a, source);
 }
@@ -157,7 +166,7 @@ struct by_pairs {
   }
 };
 
-/// The same with fewer points per block, so that small clouds also fill the device. It is for answers that want many
+/// By pairs, with fewer points per block, so that small clouds also fill the device. It is for answers that want many
 /// pairs: a pair takes longer than reading its point.
 struct by_many_pairs : by_pairs {
   static constexpr std::uint32_t in_block = in_block_round / 2;

@@ -33,7 +33,10 @@ struct lane_sharing {
     if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
       bool over = false, given = false;
-      if (lane() == 0) given = fresh(mine.lanes) != 0, over = fresh(memory().idle) == all_warps;
+      if (lane() == 0) {
+        given = fresh(mine.lanes) != 0;
+        over = fresh(memory().idle) == all_warps;
+      }
       if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
       __nanosleep(1000);  // waiting warps should not slow working ones; how long changes no answer

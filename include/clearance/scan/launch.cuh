@@ -27,16 +27,18 @@ __global__ void __launch_bounds__(most_parts)
   const auto pose = [groups](std::uint32_t k) -> world_transform& {
     return groups[k / most_parts].world_from_part[k % most_parts];
   };
+
   bool rigid = true;
   for (std::uint32_t k = t; k < count; k += most_parts) {
-    world_transform its = world_from_part[k];
-    rigid = make_rigid(its) && rigid;
-    pose(k) = its;
+    world_transform given = world_from_part[k];
+    rigid = make_rigid(given) && rigid;
+    pose(k) = given;
   }
   if (t == 0) {
     frame = {world_from_cloud == nullptr ? world_transform() : *world_from_cloud, {0, 0, 0}, off};
     rigid = make_rigid(frame.world_from_cloud) && rigid;
   }
+
   rigid = __syncthreads_and(rigid);
   if (t == 0 && rigid) frame.origin = frames::origin_near(frames::middle_of(frame.world_from_cloud, pose, count));
   __syncthreads();
@@ -48,10 +50,14 @@ __global__ void __launch_bounds__(most_parts)
     for (std::uint32_t k = 0; k < count; ++k)
       frame.add(views[k].facts, groups[k / most_parts].parts.part[k % most_parts].error);
   __syncthreads();
+
   for (std::uint32_t first = 0, g = 0; first < count || g == 0; first += most_parts, ++g) {
     const std::uint32_t parts = lower_of(count - first, most_parts);
     if (t * cluster < parts) groups[g].parts.gather(t, parts);
-    if (t == 0) groups[g].frame = frame, groups[g].rigid = rigid;
+    if (t == 0) {
+      groups[g].frame = frame;
+      groups[g].rigid = rigid;
+    }
   }
 }
 
@@ -99,7 +105,7 @@ class launcher {
   /// The most blocks of a kernel.
   unsigned most_blocks() const { return 2 * processors_; }
 
-  /// It needs no memory, because there may be none left.
+  /// Forgets the scan before. It takes no memory, because none may be left.
   void forget() {
     const scan_state fresh;
     for (std::uint32_t group = 0; group < groups(); ++group) on_.stage(std::span(&fresh, 1), state_.data() + group);
@@ -111,10 +117,16 @@ class launcher {
                               const typename Tally::arguments& answer) const {
     scan_arguments<Tally> a{};
     const std::uint32_t before = group * most_parts;
-    a.parts = std::min(parts_ - before, most_parts), a.views = views_.data() + before, a.state = state_.data() + group,
+    a.parts = std::min(parts_ - before, most_parts);
+    a.views = views_.data() + before;
+    a.state = state_.data() + group;
     a.rest = placed_.data() + group;
-    a.overflow = overflow_.data(), a.overflow_room = overflow_room_;
-    a.cloud = now.cloud, a.first = now.first, a.last = now.last, a.answer = answer;
+    a.overflow = overflow_.data();
+    a.overflow_room = overflow_room_;
+    a.cloud = now.cloud;
+    a.first = now.first;
+    a.last = now.last;
+    a.answer = answer;
     return a;
   }
 
@@ -123,8 +135,10 @@ class launcher {
   void put(const frames::cloud_frame& frame, std::uint32_t group, scan_arguments<Tally>& a) {
     const auto places = std::span(frame.places).subspan(group * most_parts, a.parts);
     const auto fill = [&](auto& parts, world_transform* world) {
-      for (std::uint32_t k = 0; k < a.parts; ++k)
-        parts.part[k] = frame_part(places[k]), world[k] = places[k].world_from_part;
+      for (std::uint32_t k = 0; k < a.parts; ++k) {
+        parts.part[k] = frame_part(places[k]);
+        world[k] = places[k].world_from_part;
+      }
       for (std::uint32_t c = 0; c * cluster < a.parts; ++c) parts.gather(c, a.parts);
     };
     a.frame = frame;
@@ -134,9 +148,9 @@ class launcher {
     fill(staged_->parts, staged_->world_from_part);
     const auto bytes = [](auto* from) { return reinterpret_cast<std::byte*>(from); };
     const std::span<const std::byte> parts(bytes(&staged_->parts), bytes(staged_->parts.part + a.parts));
-    placed_parts* const there = placed_.data() + group;
-    on_.stage(parts, bytes(&there->parts));
-    on_.stage(std::span<const world_transform>(staged_->world_from_part, a.parts), there->world_from_part);
+    placed_parts* const placed = placed_.data() + group;
+    on_.stage(parts, bytes(&placed->parts));
+    on_.stage(std::span<const world_transform>(staged_->world_from_part, a.parts), placed->world_from_part);
   }
 
   /// Prepares poses from device or pinned memory on the device, for all groups. `off`: `rounding_of` the source.

@@ -16,7 +16,7 @@ __noinline__ __device__ bool is_inside(std::uint32_t k, vec3 x) {
   return frames::may_reach(place.root.around, 0, x) && frame::view(k).interior.inside(place.part_from_cloud(x));
 }
 
-/// Each lane has a point and a visitor for it:
+/// Each lane has a point and a visitor, which has the members
 ///   reach(k)                                how near part k must be to the point to matter;
 ///   offer(k, place, id, distance), where `place` is the primitive's place in the tree; offer_inside(k).
 template <class Tally>
@@ -41,7 +41,10 @@ struct lone_search : tree_steps<Tally> {
   template <class Visitor>
   static __device__ bool inside(std::uint32_t k, vec3 x, Visitor& v) {
     if constexpr (has_interior<typename Tally::part_type>) {
-      if (is_inside<Tally>(k, x)) return v.offer_inside(k), true;
+      if (is_inside<Tally>(k, x)) {
+        v.offer_inside(k);
+        return true;
+      }
     }
     return false;
   }
@@ -65,10 +68,12 @@ struct lone_search : tree_steps<Tally> {
       const auto keep = [&](part_node e) {
         if (!(next.bound <= e.bound)) {
           const part_node farther = next;
-          next = e, e = farther;
+          next = e;
+          e = farther;
         }
         if (e.bound == e.bound) stack[below++] = e;
       };
+
 #pragma unroll 1
       for (std::uint32_t k = begin; k < begin + cluster && k < parts; ++k) {
         const ball around = frame::place(k).root.around;
@@ -77,21 +82,22 @@ struct lone_search : tree_steps<Tally> {
         if (near) keep({lowered(rough_length(x - around.center) - around.radius, around.radius), steps::root(k), k});
         __syncwarp();
       }
+
 #pragma unroll 1
       while (__any_sync(all_lanes, next.bound == next.bound)) {
-        const part_node here = next;
+        const part_node node = next;
         next.bound = not_a_number;
-        const std::uint32_t k = here.part, count = here.bound <= v.reach(k) ? steps::size(k, here.node) : 0;
-        const bool leaf = count > 0 && steps::is_leaf(k, here.node);
+        const std::uint32_t k = node.part, count = node.bound <= v.reach(k) ? steps::size(k, node.node) : 0;
+        const bool leaf = count > 0 && steps::is_leaf(k, node.node);
         const vec3 q = frame::place(k).part_from_cloud(x);
 #pragma unroll 1
         for (std::uint32_t j = 0; __any_sync(all_lanes, j < count); ++j) {
           if (j < count && leaf) {
-            const auto place = steps::place_of(here.node, j);
+            const auto place = steps::place_of(node.node, j);
             if (const real d = steps::primitive(k, place).distance(q); d <= v.reach(k))
               v.offer(k, place, steps::id(k, place), d);
           } else if (j < count) {
-            const auto step = steps::child(k, here.node, j);
+            const auto step = steps::child(k, node.node, j);
             if (const real b = traits::lower_bound(step.volume, q); b <= v.reach(k)) keep({b, step.node, k});
           }
           __syncwarp();

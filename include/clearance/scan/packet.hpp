@@ -25,7 +25,12 @@ struct packet {
   alignas(64) real x[Lanes], y[Lanes], z[Lanes], within[Lanes];
 
   vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
-  void put(std::size_t j, vec3 p, real reach) { x[j] = p.x, y[j] = p.y, z[j] = p.z, within[j] = reach; }
+  void put(std::size_t j, vec3 p, real reach) {
+    x[j] = p.x;
+    y[j] = p.y;
+    z[j] = p.z;
+    within[j] = reach;
+  }
 
   /// Marks the lanes that something in a volume may be within reach of. Returns true if there are any.
   template <class V>
@@ -92,9 +97,13 @@ struct walking_packet : packet<Lanes> {
     this->mark(tree.volume(leaf), near);
     const auto gather = [&] {
       count = 0;
-      for (std::size_t j = 0; j < Lanes; ++j) list[count] = std::uint32_t(j), count += near[j];
+      for (std::size_t j = 0; j < Lanes; ++j) {
+        list[count] = std::uint32_t(j);
+        count += near[j];
+      }
     };
     gather();
+
     const std::uint32_t size = tree.size(leaf);
     for (std::uint32_t k = 0; k < size; ++k) {
       const typename H::primitive_type& primitive = tree.primitive(leaf, k);
@@ -105,12 +114,14 @@ struct walking_packet : packet<Lanes> {
         });
         gather();
       }
+
       for (std::uint32_t n = 0; n < count; ++n) {
         const std::uint32_t j = list[n];
-        nearest its{within[j], best[j]};
-        its.offer(id, primitive.distance((*this)[j]));
-        if (its.best != best[j]) where[j] = {leaf, k};
-        within[j] = its.within, best[j] = its.best;
+        nearest so_far{within[j], best[j]};
+        so_far.offer(id, primitive.distance((*this)[j]));
+        if (so_far.best != best[j]) where[j] = {leaf, k};
+        within[j] = so_far.within;
+        best[j] = so_far.best;
       }
     }
   }

@@ -54,9 +54,9 @@ struct cell_packets : lone_search<Tally> {
       for (;;) {
         const std::uint32_t nearest = least_of(all_lanes, mine);
         if (!__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(0)) || nearest == no_bound) break;
-        const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1;
-        if (lone::lane() == its) mine = no_bound;
-        walks |= examine(begin + its, live, x, v);
+        const std::uint32_t holder = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1;
+        if (lone::lane() == holder) mine = no_bound;
+        walks |= examine(begin + holder, live, x, v);
       }
     }
     if (__any_sync(all_lanes, walks)) v = lone::alone(walks, x, v);
@@ -74,18 +74,30 @@ struct cell_packets : lone_search<Tally> {
     const cells_view& cells = frame::view(k).cells;
     cell_leaf leaf;
     if (live) leaf = cells(q);
+
     if constexpr (has_interior<typename Tally::part_type>) {
-      if (leaf.node.kind == cell_kind::inside) v.offer_inside(k), live = false;
-      if (live && !leaf.node.outside && is_inside<Tally>(k, x)) v.offer_inside(k), live = false;
+      if (leaf.node.kind == cell_kind::inside) {
+        v.offer_inside(k);
+        live = false;
+      }
+      if (live && !leaf.node.outside && is_inside<Tally>(k, x)) {
+        v.offer_inside(k);
+        live = false;
+      }
       __syncwarp();
     }
+
     if (!live) leaf.node.count = 0;
     const auto test = [&](std::uint32_t at) {
       const real d = steps::whole_primitive(k, at).distance(q);
       if (d <= v.reach(k)) v.offer(k, at, steps::id(k, at), d);
     };
     std::uint32_t begin = 0;
-    if (leaf.node.count != 0) test(cells.candidate(leaf, 0).place), begin = 1;
+    if (leaf.node.count != 0) {
+      test(cells.candidate(leaf, 0).place);
+      begin = 1;
+    }
+
 #pragma unroll 1
     for (; __any_sync(all_lanes, begin < leaf.node.count); begin += 32) {
       const std::uint32_t count = begin < leaf.node.count ? lower_of(32, leaf.node.count - begin) : 0;
@@ -146,8 +158,8 @@ __device__ inline void add_dropped(std::uint32_t& dropped, drop_reason mine) {
   if (!__any_sync(all_lanes, mine != drop_reason::none)) return;
 #pragma unroll
   for (int reason = 1; reason < drop_reasons; ++reason) {
-    const unsigned those = __ballot_sync(all_lanes, int(mine) == reason);
-    if (threadIdx.x % 32 == unsigned(reason)) dropped += std::uint32_t(__popc(those));
+    const unsigned dropped_now = __ballot_sync(all_lanes, int(mine) == reason);
+    if (threadIdx.x % 32 == unsigned(reason)) dropped += std::uint32_t(__popc(dropped_now));
   }
 }
 
@@ -170,6 +182,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   const std::uint32_t t = threadIdx.x, lane = t % 32, all_warps = gridDim.x * warps, row = a.rounds,
                       packets = (a.points + 31) / 32;
   std::uint32_t packet = (t / 32 * gridDim.x + blockIdx.x) * row, left = row, dropped = 0;
+
   const auto read = [&](std::uint32_t p) {
     const std::uint32_t i = place_in_packet(p, a.columns);
     return i < a.points ? source[i] : sample{{not_a_number, 0, 0}};
@@ -179,6 +192,7 @@ __global__ void __launch_bounds__(block_threads, 2)
   __syncthreads();
   sharpen<Tally>(t, 0);
   __syncthreads();
+
   for (;;) {
     const bool own = packet < packets;
     given_lanes work{packet, all_lanes};
@@ -186,16 +200,19 @@ __global__ void __launch_bounds__(block_threads, 2)
       if (!walks::receive(work)) break;
       next = read(work.packet);
     }
+
     const std::uint32_t p = work.packet;
     const std::uint32_t i = place_in_packet(p, a.columns), index = a.first + i;
-    const sample here = next;
+    const sample now = next;
     if (own) {
-      ++packet, --left;
+      ++packet;
+      --left;
       if (left != 0) next = read(packet);
-      add_dropped(dropped, here.dropped);
+      add_dropped(dropped, now.dropped);
     }
-    const vec3 x = here.position - s.origin;
-    const bool exists = i < a.points, counts = exists && here.valid();
+    const vec3 x = now.position - s.origin;
+    const bool exists = i < a.points, counts = exists && now.valid();
+
     auto v = Tally::visitor(s, index, counts);
     bool live;
     if (own) {
@@ -205,14 +222,17 @@ __global__ void __launch_bounds__(block_threads, 2)
       live = (work.lanes >> lane & 1) != 0;
       if (walks::begins_anew && live) Tally::remind(s, index, x, v);
     }
+
     const unsigned done = walks::search(p, index, work.lanes, live, x, v);
     if ((done >> lane & 1) != 0 && exists) Tally::take(s, index, counts, v);
     if (own && left == 0) {  // a warp gets its next row only when it needs one: some rows take much longer
       if (lane == 0) packet = (all_warps + atomicAdd(&a.state->taken, 1u)) * row;
-      packet = __shfl_sync(all_lanes, packet, 0), left = row;
+      packet = __shfl_sync(all_lanes, packet, 0);
+      left = row;
       next = read(packet);
     }
   }
+
   if (lane < drop_reasons && dropped != 0) atomicAdd(&s.dropped[lane], dropped);
   __syncthreads();
   finish_block<Tally>(a, source);

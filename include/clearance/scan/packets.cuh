@@ -20,11 +20,11 @@ namespace clearance::scan {
 
 /// What a warp works on.
 struct packet_task {
-  std::uint32_t packet;  ///< Its number.
-  std::uint32_t shared;  ///< Its place in `sharing_memory`, if other warps work or have worked on it, too; or none.
+  std::uint32_t packet;  ///< The packet's number.
+  std::uint32_t shared;  ///< The packet's place in `sharing_memory`, if other warps have worked on it, too; or none.
   std::uint32_t nodes;   ///< If this warp helps: nodes in its stack. 0: the packet is its own.
-  std::uint32_t part;    ///< Those nodes are of this part's tree,
-  unsigned live;         ///< and for these points.
+  std::uint32_t part;    ///< If this warp helps: whose tree the nodes are of.
+  unsigned live;         ///< If this warp helps: the points that the nodes are for, one bit each.
 };
 
 /// A packet that several warps work on.
@@ -45,7 +45,10 @@ struct sharing_memory {
 
   __device__ void clear() {
     idle = 0;
-    for (auto& t : tasks) t.shared = none, t.nodes = 0;
+    for (auto& t : tasks) {
+      t.shared = none;
+      t.nodes = 0;
+    }
     for (auto& p : packets) p.walkers = p.lock = 0;
   }
 };
@@ -67,7 +70,10 @@ struct shared_walk {
     if (lane() == 0) atomicOr(&memory().idle, 1u << warp());
     for (;;) {
       bool over = false, given = false;
-      if (lane() == 0) given = fresh(task().shared) != none, over = fresh(memory().idle) == all_warps;
+      if (lane() == 0) {
+        given = fresh(task().shared) != none;
+        over = fresh(memory().idle) == all_warps;
+      }
       if (__any_sync(all_lanes, given)) break;
       if (__any_sync(all_lanes, over)) return false;
       __nanosleep(300);  // waiting warps should not slow working ones; how long changes no answer
@@ -104,8 +110,9 @@ struct shared_walk {
     Node* const mine = stacks[warp()];
     __syncwarp();  // all pushes are visible
     const real most = from_ordered(most_of(all_lanes, ordered(reach)));
-    const unsigned those = __ballot_sync(all_lanes, lane() < top && mine[lane()].bound <= most);
-    if (__popc(those) < 2) return;
+    const unsigned wanted = __ballot_sync(all_lanes, lane() < top && mine[lane()].bound <= most);
+    if (__popc(wanted) < 2) return;
+
     const bool first = task().shared == none;
     const std::uint32_t place = first ? warp() % sharing_memory<Tally>::most : task().shared;
     std::uint32_t helper = none;
@@ -121,21 +128,26 @@ struct shared_walk {
     }
     helper = __shfl_sync(all_lanes, helper, 0);
     if (helper == none) return;
-    const bool give = (those >> lane() & 1) != 0 && (__popc(those >> lane()) & 1) == 0;
+
+    const bool give = (wanted >> lane() & 1) != 0 && (__popc(wanted >> lane()) & 1) == 0;
     const unsigned given = __ballot_sync(all_lanes, give), live = __ballot_sync(all_lanes, reach > -infinity);
     if (give) {
       stacks[helper][__popc(given & ((1u << lane()) - 1))] = mine[lane()];
       mine[lane()].bound = not_a_number;  // not wanted here any more
     }
     if (first) s.packets[place].found[lane()] = v;
-    packet_task& its = s.tasks[helper];
+
+    packet_task& handed = s.tasks[helper];
     if (lane() == 0) {
       task().shared = place;
-      its.packet = task().packet, its.nodes = std::uint32_t(__popc(given)), its.part = k, its.live = live;
+      handed.packet = task().packet;
+      handed.nodes = std::uint32_t(__popc(given));
+      handed.part = k;
+      handed.live = live;
     }
     __threadfence_block();
     __syncwarp();
-    if (lane() == 0) *static_cast<volatile std::uint32_t*>(&its.shared) = place;
+    if (lane() == 0) *static_cast<volatile std::uint32_t*>(&handed.shared) = place;
   }
 
   /// Ends the task. Returns true if its packet is done; then `v` is all that was found.
@@ -150,7 +162,8 @@ struct shared_walk {
     std::uint32_t others = 0;
     if (lane() == 0) {
       others = atomicSub(&p.walkers, 1u) - 1;
-      task().shared = none, task().nodes = 0;
+      task().shared = none;
+      task().nodes = 0;
     }
     release(p);
     return __shfl_sync(all_lanes, others, 0) == 0;
@@ -238,14 +251,15 @@ struct packet_search : lone_search<Tally> {
           return;
         }
       }
-      const bool its = (near >> lane() & 1) != 0;
-      together(live && its, x, middle, from_bits(most_of(all_lanes, its ? to_bits(way) : 0)) * (1 + slack), v);
-      live = live && !its, left &= ~near;
+      const bool is_near = (near >> lane() & 1) != 0;
+      together(live && is_near, x, middle, from_bits(most_of(all_lanes, is_near ? to_bits(way) : 0)) * (1 + slack), v);
+      live = live && !is_near;
+      left &= ~near;
     }
   }
 
   static constexpr std::uint32_t at_once = most_children;
-  static constexpr std::uint32_t worth_sharing = 4;  ///< So few pending nodes are tested faster than handed over.
+  static constexpr std::uint32_t worth_sharing = 4;  ///< Fewer pending nodes are tested faster than handed over.
   /// Searches part by part for points within `spread` of their middle.
   template <class Visitor>
   static __device__ void together(bool live, vec3 x, vec3 middle, real spread, Visitor& v) {
@@ -263,9 +277,9 @@ struct packet_search : lone_search<Tally> {
       for (;;) {
         const std::uint32_t nearest = least_of(all_lanes, mine);
         if (nearest == no_bound) break;
-        const std::uint32_t its = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1,
-                            k = begin + its;
-        if (lane() == its) mine = no_bound;
+        const std::uint32_t holder = std::uint32_t(__ffs(int(__ballot_sync(all_lanes, mine == nearest)))) - 1,
+                            k = begin + holder;
+        if (lane() == holder) mine = no_bound;
         if (__any_sync(all_lanes, live && from_ordered(nearest) <= v.reach(k))) ask(k, live, x, v);
       }
     }
@@ -303,6 +317,7 @@ struct packet_search : lone_search<Tally> {
     std::uint32_t top = given != 0 ? given : 1;
     __syncwarp();
     if (lane() == 0 && given == 0) stack[0] = {-infinity, steps::root(k)};
+
 #pragma unroll 1
     while (top > 0) {
       __syncwarp();  // all pushes are visible
@@ -316,11 +331,14 @@ struct packet_search : lone_search<Tally> {
           const auto primitive = steps::primitive(k, place);
           if constexpr (bounded_primitive<typename hierarchy::primitive_type>)  // a rough test is enough for most
             if (__all_sync(all_lanes, primitive.lower_bound(q) > reach)) continue;
-          if (const real d = primitive.distance(q); d <= reach)
-            v.offer(k, place, steps::id(k, place), d), reach = v.reach(k);
+          if (const real d = primitive.distance(q); d <= reach) {
+            v.offer(k, place, steps::id(k, place), d);
+            reach = v.reach(k);
+          }
         }
         continue;
       }
+
 #pragma unroll 1
       for (std::uint32_t begin = 0; begin < count; begin += at_once)
         top = push(k, e.node, begin, count, q, reach, stack, top);
@@ -353,11 +371,16 @@ struct packet_search : lone_search<Tally> {
         low[h] = least_of(all_lanes, begin + h < count && b <= reach ? (ordered(b) & ~number) | h : unwanted);
       }
     }
+
     std::uint32_t mine = unwanted, nearer = 0, all = 0;  // one child per lane
 #pragma unroll
     for (std::uint32_t h = 0; h < at_once; ++h) mine = lane() == h ? low[h] : mine;
 #pragma unroll
-    for (std::uint32_t h = 0; h < at_once; ++h) all += low[h] != unwanted, nearer += low[h] < mine;
+    for (std::uint32_t h = 0; h < at_once; ++h) {
+      all += low[h] != unwanted;
+      nearer += low[h] < mine;
+    }
+
     __syncwarp();  // all have read the node
     if (mine != unwanted)
       stack[top + all - 1 - nearer] = {from_ordered(mine & ~number), steps::child(k, node, begin + lane()).node};

@@ -92,10 +92,10 @@ struct leaf_first : tree_steps<Tally> {
     const std::uint32_t part = s.part_of_pair[i];
     real& passed = passed_by(i) = not_a_number;
     if (Tally::skips(s, part, c.point, i, c.x)) return;
-    const field_range its = fields[part](frame::place(part).part_from_cloud(c.x));
-    const bool outside = !has_interior<typename Tally::part_type> || its.side == field_side::outside;
-    passed = outside ? its.low : -infinity;
-    Tally::hear_bound(s, part, i, its.high);
+    const field_range range = fields[part](frame::place(part).part_from_cloud(c.x));
+    const bool outside = !has_interior<typename Tally::part_type> || range.side == field_side::outside;
+    passed = outside ? range.low : -infinity;
+    Tally::hear_bound(s, part, i, range.high);
   }
 
   template <class Team, class PairOf>
@@ -111,11 +111,13 @@ struct leaf_first : tree_steps<Tally> {
       const bool asked = live;
       live = live && !Tally::skips(s, part, c.point, i, c.x);
       live = team.first(!live) < 0;  // others may be changing its inputs
+
       const vec3 q = frame::place(part).part_from_cloud(c.x);
       nearest_passed others{Tally::reach_of_part(s, part, 0)};
       bool found = live;
       const typename steps::node_type leaf = nearest_leaf(steps_of_part<Tally>{part}, q, found, team, others);
       const std::uint32_t size = found ? steps::size(part, leaf) : 0;
+
       distance_key best = no_key;
 #pragma unroll 1
       for (std::uint32_t k = team.rank(); k < size; k += Team::size) {
@@ -123,6 +125,7 @@ struct leaf_first : tree_steps<Tally> {
         const real distance = steps::primitive(part, place).distance(q);
         if (const distance_key key = make_key(distance, steps::id(part, place)); key < best) best = key;
       }
+
       if (live && key_distance(best) <= Tally::reach_of_part(s, part, 0)) Tally::hear(s, part, i, best);
       const real passed = team.least(others.bound);
       if (asked && team.rank() == 0)
@@ -152,21 +155,22 @@ struct pair_search : cell_pairs<Tally> {
   using pair = pair_of<element>;
   static constexpr bool any_size = node_of<hierarchy>::any_size;
 
-  /// Keeps pairs for `drain`: `those` of a lane's points that are near a part of the cluster from `first_part` on, four
-  /// bits per part. Returns those that it has no room for. The pairs that come first always have room.
-  static __device__ unsigned add(unsigned those, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
+  /// Keeps pairs for `drain`: `near` has a bit for each of a lane's points that is near a part of the cluster from
+  /// `first_part` on, four bits per part. Returns those that it has no room for. The pairs that come first always have
+  /// room.
+  static __device__ unsigned add(unsigned near, const quad_points& p, std::uint32_t first, std::uint32_t first_part) {
     static_assert(quad * cluster <= 32 && pair_capacity >= quad * cluster);
     memory& s = frame::here();
-    std::uint32_t slot = atomicAdd(&s.pairs, std::uint32_t(__popc(those)));
+    std::uint32_t slot = atomicAdd(&s.pairs, std::uint32_t(__popc(near)));
     unsigned left = 0;
 #pragma unroll
     for (int j = 0; j < quad; ++j) {
-      unsigned its = those >> j & 0x11111111u;
-      for (; its != 0 && slot < pair_capacity; its &= its - 1, ++slot) {
+      unsigned near_parts = near >> j & 0x11111111u;
+      for (; near_parts != 0 && slot < pair_capacity; near_parts &= near_parts - 1, ++slot) {
         s.pair_table[slot] = {pair_search::element_at(first + j, p.at[j]), s.head.first + first + j};
-        s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(its))) - 1) / quad);
+        s.part_of_pair[slot] = std::uint16_t(first_part + (unsigned(__ffs(int(near_parts))) - 1) / quad);
       }
-      left |= its << j;
+      left |= near_parts << j;
     }
     return left;
   }
@@ -197,8 +201,10 @@ struct pair_search : cell_pairs<Tally> {
     const pair c = live ? s.pair_table[i] : pair{};
     const std::uint32_t part = live ? s.part_of_pair[i] : 0;
     live = live && pair_search::near_part(s, part, c.x) && !Tally::skips(s, part, c.point, i, start_of(c.x));
-    if constexpr (Tally::goes_ahead)  // others may be changing its inputs, and this warp is about to
-      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0, __syncwarp();
+    if constexpr (Tally::goes_ahead) {  // other warps may be changing the inputs of `live`, and this one is about to
+      live = (__ballot_sync(all_lanes, live) >> group() * mates & 1) != 0;
+      __syncwarp();
+    }
     const element q = moved(frame::place(part).part_from_cloud, c.x);
     if constexpr (has_interior<typename Tally::part_type>) {
       const unsigned gone =
@@ -230,22 +236,26 @@ struct pair_search : cell_pairs<Tally> {
     std::uint32_t top = 0, row = 0;
     [[maybe_unused]] std::uint32_t below = 0;  // nodes in memory
     bool shared = false;
+
 #pragma unroll 1
     for (int round = 0;; ++round) {
 #pragma unroll 1
       for (; row * warps < count && top < at_once && (!any_size || below == 0); row += at_once) {
         // A point's pairs follow one another, and so do its neighbours'. So each row begins with another warp.
-        const std::uint32_t its = row + group(), i = its * warps + (its + warp) % warps;
+        const std::uint32_t turn = row + group(), i = turn * warps + (turn + warp) % warps;
         if constexpr (Tally::goes_ahead)
           top = admit(i < count ? Tally::open_pair(s, i) : 0, i < count, stack, top);
         else
           top = admit(i, i < count, stack, top);
       }
+
       if constexpr (any_size)
         if (top == 0 && below != 0) {
-          top = below < at_once ? below : at_once, below -= top;
+          top = below < at_once ? below : at_once;
+          below -= top;
           raise(stack, top, below);
         }
+
       if (top == 0) {
         if (shared) break;
         __syncthreads();
@@ -253,6 +263,7 @@ struct pair_search : cell_pairs<Tally> {
         top = take_share(stack);
         continue;
       }
+
       if (round % 8 == 7) elsewhere.hear(s);
       constexpr std::uint32_t room = stack_capacity - deepest_stack, growth = most_children - 1;
       static_assert(at_once - 1 + at_once * most_children <= room - at_once * growth &&
@@ -265,9 +276,11 @@ struct pair_search : cell_pairs<Tally> {
           taken = 1;
           if (top > room) {
             sink(stack, top, below);
-            below += top - at_once, top = at_once;
+            below += top - at_once;
+            top = at_once;
           }
         }
+
       const pending e = group() < taken ? stack[top - 1 - group()] : pending{not_a_number, {}, 0};  // within no reach
       __syncwarp();
       top = expand(e, stack, top - taken);
@@ -383,10 +396,10 @@ struct pair_search : cell_pairs<Tally> {
 
   /// All lanes with `mine` push at once. Returns the stack's new size.
   static __device__ std::uint32_t push(const pending& e, bool mine, pending* stack, std::uint32_t top) {
-    const unsigned those = __ballot_sync(all_lanes, mine);
-    pending* const place = stack + top + __popc(those & ((1u << threadIdx.x % 32) - 1));
+    const unsigned pushing = __ballot_sync(all_lanes, mine);
+    pending* const place = stack + top + __popc(pushing & ((1u << threadIdx.x % 32) - 1));
     if (mine) *place = e;
-    return top + std::uint32_t(__popc(those));
+    return top + std::uint32_t(__popc(pushing));
   }
 
   /// Tests the primitives of leaves. All lanes of a warp call it.

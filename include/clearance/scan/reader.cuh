@@ -14,7 +14,7 @@ struct quad_points {
   vec3 at[quad];
   unsigned reasons;
 };
-inline constexpr unsigned no_point = 0xff;  ///< There is no such point.
+inline constexpr unsigned no_point = 0xff;  ///< Beyond the last point of the cloud.
 
 /// Neighbouring points are near a part together, and a block that gets many such points keeps all others waiting. So
 /// pieces of points are dealt out to the blocks like cards.
@@ -66,8 +66,8 @@ class drop_counter {
             0u, 1u, 8 * (reasons >> 8 * j & 0xff) - 8);  // 0, other reasons and no_point are shifted out
 #pragma unroll
       for (unsigned reason = in_bytes + 1; reason < drop_reasons; ++reason)
-        if (const unsigned those = __vcmpeq4(reasons, reason * 0x01010101u); those != 0)
-          atomicAdd(&block[reason], unsigned(__popc(those)) / 8);
+        if (const unsigned equal = __vcmpeq4(reasons, reason * 0x01010101u); equal != 0)
+          atomicAdd(&block[reason], unsigned(__popc(equal)) / 8);
     }
   }
 
@@ -96,7 +96,8 @@ __device__ quad_points look_closely(const Source& source, std::uint32_t points, 
     sample s{{0, 0, 0}};
     const bool exists = first + j < points;
     if (exists) s = source[first + j];
-    p.at[j] = s.position, p.reasons |= (exists ? unsigned(s.dropped) : no_point) << 8 * j;
+    p.at[j] = s.position;
+    p.reasons |= (exists ? unsigned(s.dropped) : no_point) << 8 * j;
   }
   return p;
 }

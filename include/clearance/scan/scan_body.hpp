@@ -43,14 +43,14 @@ struct scan_body {
   /// A point less the origin, or its capsule.
   CLEARANCE_HD auto element(vec3 p, std::size_t i) const { return element_less(source, i, p, origin); }
 
-  /// Tests one point against every part, or those whose bit k % 32 is set.
-  CLEARANCE_HD void visit(vec3 p, std::size_t i, std::uint32_t those = ~0u) const {
-    const auto all = element(p, i);
+  /// Tests one point against every part k whose bit k % 32 is set.
+  CLEARANCE_HD void visit(vec3 p, std::size_t i, std::uint32_t near_parts = ~0u) const {
+    const auto place = element(p, i);
     for (std::uint32_t k = 0; k < part_count; ++k)
-      if ((those >> k % 32 & 1) != 0) visit(all, first + std::uint32_t(i), k);
+      if ((near_parts >> k % 32 & 1) != 0) visit(place, first + std::uint32_t(i), k);
   }
 
-  /// Tests it, or its capsule, against one part. `index` is its number among all clouds' points.
+  /// Tests a point, or its capsule, against one part. `index` is the point's number among all clouds' points.
   template <class Element>
   CLEARANCE_HD void visit(const Element& p, std::uint32_t index, std::uint32_t k) const {
     const frames::placement& place = places[k];
@@ -76,7 +76,7 @@ struct scan_body {
   }
 };
 
-/// After a loop: makes counts of what was dropped.
+/// Makes counts of what a loop has dropped.
 struct tell_counts {
   const drop_counts* from;
   point_counts* to;
@@ -97,17 +97,25 @@ frames::frame_facts plain_pass(const On& on, const model_view<PartView>& model,
   auto dropped = on.template make_scratch<drop_counts>(1);
   const drop_counts start;
   on.stage(std::span(&start, 1), dropped.data());
+
   frames::cloud_frame frame;
   const std::uint64_t seen = frames::for_each_turn(
       frame, model.facts, poses, clouds, [&]<point_source S>(const S& anywhere, const frames::turn& now) {
         const S source = here(anywhere, now.cloud);
         auto places = on.template make_scratch<frames::placement>(parts);
         on.stage(std::span<const frames::placement>(frame.places), places.data());
-        const auto its = answer(source, now);
-        on.for_ranges(
-            source.size(),
-            scan_body<PartView, S, std::remove_const_t<decltype(walk)>, std::remove_const_t<decltype(its)>>{
-                model.parts, places.data(), parts, source, frame.origin, now.first, dropped.data(), its, walk});
+        const auto tally = answer(source, now);
+        on.for_ranges(source.size(),
+                      scan_body<PartView, S, std::remove_const_t<decltype(walk)>, std::remove_const_t<decltype(tally)>>{
+                          .parts = model.parts,
+                          .places = places.data(),
+                          .part_count = parts,
+                          .source = source,
+                          .origin = frame.origin,
+                          .first = now.first,
+                          .counts = dropped.data(),
+                          .answer = tally,
+                          .walk = walk});
       });
   on.for_each(1, tell_counts{dropped.data(), counts, seen});
   return frame;

@@ -32,16 +32,16 @@ struct alignas(8) primitive_of_part {
 /// A warp's share of shared memory. What all lanes know is here, too, because registers are few.
 struct seen_memory {
   static constexpr std::uint32_t at_once = 4;         ///< Nodes whose eight children are looked at together.
-  static constexpr std::uint32_t leaves_at_once = 8;  ///< With four primitives each.
-  static constexpr std::uint32_t many = 64;           ///< With so many pending nodes it takes one after the other.
+  static constexpr std::uint32_t leaves_at_once = 8;  ///< Leaves looked at together, four primitives of each.
+  static constexpr std::uint32_t many = 64;           ///< With more pending nodes a warp takes one after the other.
   static constexpr std::uint32_t most_nodes = many + 32 + deepest_stack, most_leaves = leaves_at_once + 32,
                                  most_candidates = 64;
   seen_node nodes[most_nodes];
   seen_node leaves[most_leaves];
   seen_primitive candidates[most_candidates];
   primitive_of_part which[most_candidates];
-  surroundings all;
-  real reach;              ///< The largest of the points'.
+  surroundings points;     ///< Of all points of the warp.
+  real reach;              ///< The largest reach of the points.
   primitive_of_part hint;  ///< What was near to this warp's last points.
 };
 

@@ -75,7 +75,7 @@ struct steps_down<Tally, H> : frame_parts<Tally> {
   static __device__ primitive_type primitive(std::uint32_t k, std::uint32_t place) {
     return read_only(tree(k).primitives + place);
   }
-  /// The same from global memory, in as few pieces as the size allows: for lanes that each read another one.
+  /// A primitive from global memory, in as few pieces as the size allows: for lanes that read different ones.
   static __device__ primitive_type whole_primitive(std::uint32_t k, std::uint32_t place) {
     return whole(tree(k).primitives + place);
   }
@@ -180,8 +180,8 @@ struct lanes {
   }
   __device__ int first(bool mine) const {
     const std::uint32_t first_lane = threadIdx.x & (32 - size);
-    const unsigned those = __ballot_sync(all_lanes, mine) >> first_lane & ((1u << size) - 1);
-    return those != 0 ? int(first_lane) + __ffs(int(those)) - 1 : -1;
+    const unsigned wanted = __ballot_sync(all_lanes, mine) >> first_lane & ((1u << size) - 1);
+    return wanted != 0 ? int(first_lane) + __ffs(int(wanted)) - 1 : -1;
   }
   __device__ bool is(int lane) const { return int(threadIdx.x & 31) == lane; }
   template <class T>
@@ -194,17 +194,17 @@ using eight_lanes = lanes<8>;
 /// A part's tree as `descend` takes it.
 template <class Tally>
 struct steps_of_part {
-  using all = tree_steps<Tally>;
-  using node_type = typename all::node_type;
+  using steps = tree_steps<Tally>;
+  using node_type = typename steps::node_type;
   using volume_type = typename Tally::hierarchy_type::volume_type;
   std::uint32_t part;
 
-  __device__ node_type root() const { return all::root(part); }
-  __device__ bool is_leaf(const node_type& n) const { return all::is_leaf(part, n); }
-  __device__ std::uint32_t size(const node_type& n) const { return all::size(part, n); }
-  __device__ auto child(const node_type& n, std::uint32_t j) const { return all::child(part, n, j); }
+  __device__ node_type root() const { return steps::root(part); }
+  __device__ bool is_leaf(const node_type& n) const { return steps::is_leaf(part, n); }
+  __device__ std::uint32_t size(const node_type& n) const { return steps::size(part, n); }
+  __device__ auto child(const node_type& n, std::uint32_t j) const { return steps::child(part, n, j); }
   __device__ real distance(const node_type& n, std::uint32_t j, vec3 q) const {
-    return all::primitive(part, all::place_of(n, j)).distance(q);
+    return steps::primitive(part, steps::place_of(n, j)).distance(q);
   }
 };
 

@@ -35,16 +35,25 @@ struct tangent_walk : tree_steps<Tally> {
   std::uint32_t inner = none;  ///< The first part that this lane's point is inside of.
   std::uint32_t top = 0, leaves = 0, candidates = 0;
 
-  __device__ tangent_walk(bool its, vec3 at, Visitor& visitor)
-      : s(frame::here().seen[threadIdx.x / 32]), live(its), x(at), v(visitor) {
-    const auto least = [&](real a) { return from_ordered(least_of(all_lanes, its ? ordered(a) : no_bound)); };
-    const auto most = [&](real a) { return from_ordered(most_of(all_lanes, its ? ordered(a) : 0)); };
-    const auto largest = [&](real a) { return from_bits(most_of(all_lanes, its ? to_bits(absolute(a)) : 0)); };
+  __device__ tangent_walk(bool has_point, vec3 at, Visitor& visitor)
+      : s(frame::here().seen[threadIdx.x / 32]), live(has_point), x(at), v(visitor) {
+    const auto least = [&](real a) { return from_ordered(least_of(all_lanes, has_point ? ordered(a) : no_bound)); };
+    const auto most = [&](real a) { return from_ordered(most_of(all_lanes, has_point ? ordered(a) : 0)); };
+    const auto largest = [&](real a) { return from_bits(most_of(all_lanes, has_point ? to_bits(absolute(a)) : 0)); };
     const vec3 middle{(least(x.x) + most(x.x)) / 2, (least(x.y) + most(x.y)) / 2, (least(x.z) + most(x.z)) / 2};
     const vec3 e = x - middle, half{largest(e.x), largest(e.y), largest(e.z)};
     const real radius = largest(rough_length(e)) * (1 + slack);
     __syncwarp();  // all have read what is there of the points before
-    if (lane() == 0) s.all = {middle, infinity, half, 0, {}, infinity, radius}, s.reach = infinity;
+    if (lane() == 0) {
+      s.points = {.middle = middle,
+                  .limit = infinity,
+                  .half = half,
+                  .noise = 0,
+                  .best = {},
+                  .within = infinity,
+                  .radius = radius};
+      s.reach = infinity;
+    }
     __syncwarp();
   }
 
@@ -53,7 +62,10 @@ struct tangent_walk : tree_steps<Tally> {
   /// The points' reaches have shrunk.
   __device__ void limit() {
     const std::uint32_t most = most_of(all_lanes, live ? ordered(v.reach(0)) : 0);
-    if (lane() == 0) s.reach = from_ordered(most), s.all.set_limit(s.reach);
+    if (lane() == 0) {
+      s.reach = from_ordered(most);
+      s.points.set_limit(s.reach);
+    }
     __syncwarp();
   }
   /// From shared memory, sixteen bytes at once.
@@ -72,11 +84,13 @@ struct tangent_walk : tree_steps<Tally> {
     const std::uint32_t parts = frame::here().head.parts;
     std::uint32_t begin = 0;
     bool remembered = true;
+
 #pragma unroll 1
     for (;;) {
       const bool full = leaves >= seen_memory::leaves_at_once, nodes = top > 0 || begin < parts,
-                 primitives = remembered || full || (leaves > 0 && (!nodes || s.all.best.most == infinity)),
+                 primitives = remembered || full || (leaves > 0 && (!nodes || s.points.best.most == infinity)),
                  over = !primitives && !nodes;
+
       if (over || candidates > seen_memory::most_candidates - 32) {
         forget();
         if (over || candidates > seen_memory::most_candidates - 32) measure();
@@ -86,15 +100,16 @@ struct tangent_walk : tree_steps<Tally> {
         open(begin);
         continue;
       }
-      primitive_of_part its{none, 0};
+
+      primitive_of_part primitive{none, 0};
       if (!remembered) {
-        its = take_leaves();
+        primitive = take_leaves();
       } else {
-        if (live) its = Tally::known(frame::here(), index);
-        if (lane() == 0 && its.part == none) its = s.hint;
-        if (its.part >= parts) its.part = none;
+        if (live) primitive = Tally::known(frame::here(), index);
+        if (lane() == 0 && primitive.part == none) primitive = s.hint;
+        if (primitive.part >= parts) primitive.part = none;
       }
-      examine(its, !remembered);
+      examine(primitive, !remembered);
       remembered = false;
     }
   }
@@ -104,35 +119,40 @@ struct tangent_walk : tree_steps<Tally> {
     seen_node e{};
     bool has;
     if (top == 0) {
-      e.part = begin + lane(), begin += 32;
+      e.part = begin + lane();
+      begin += 32;
       has = e.part < frame::here().head.parts;
       real noise = 0;
       if (has) {
         const frame_part& place = frame::place(e.part);
-        const seen_part seen(s.all, place.root.around, place.part_from_cloud(s.all.middle));
-        e.distance = seen.distance, noise = seen.noise;
+        const seen_part seen(s.points, place.root.around, place.part_from_cloud(s.points.middle));
+        e.distance = seen.distance;
+        noise = seen.noise;
         e.node = steps::root(e.part);
       }
+
       noise = from_bits(most_of(all_lanes, to_bits(noise)));
-      if (lane() == 0) s.all.noise = max(s.all.noise, noise);
-      inside(e.part - lane(), has && e.distance <= s.all.radius + noise);
+      if (lane() == 0) s.points.noise = max(s.points.noise, noise);
+      inside(e.part - lane(), has && e.distance <= s.points.radius + noise);
       limit();
-      has = has && e.distance <= s.all.limit;
+      has = has && e.distance <= s.points.limit;
     } else {
-      const std::uint32_t m = top > seen_memory::many ? 1 : lower_of(top, seen_memory::at_once), its = lane() / 8;
-      has = its < m;
+      const std::uint32_t m = top > seen_memory::many ? 1 : lower_of(top, seen_memory::at_once), place = lane() / 8;
+      has = place < m;
       if (has) {
-        e = s.nodes[top - 1 - its];
-        has = e.distance <= s.all.limit && lane() % 8 < e.node.count();
+        e = s.nodes[top - 1 - place];
+        has = e.distance <= s.points.limit && lane() % 8 < e.node.count();
       }
+
       top -= m;
       if (has) {
         const auto child = steps::whole_child(e.part, e.node, lane() % 8);
         const rigid_transform part_from_cloud = loaded(frame::place(e.part).part_from_cloud);
-        const surroundings all = loaded(s.all);
-        const tangent t = traits::tangent_at(child.volume, part_from_cloud(all.middle));
-        e.node = child.node, e.distance = t.distance;
-        has = all.keeps(t.distance, to_cloud(part_from_cloud, t.direction));
+        const surroundings points = loaded(s.points);
+        const tangent t = traits::tangent_at(child.volume, part_from_cloud(points.middle));
+        e.node = child.node;
+        e.distance = t.distance;
+        has = points.keeps(t.distance, to_cloud(part_from_cloud, t.direction));
       }
       __syncwarp();  // all have read the stack
     }
@@ -150,9 +170,12 @@ struct tangent_walk : tree_steps<Tally> {
     for (;;) {
       const std::uint32_t farthest = most_of(all_lanes, mine);
       if (farthest == 0) break;
-      const unsigned those = __ballot_sync(all_lanes, mine == farthest);
-      if (mine == farthest) s.nodes[top + before(those)] = e, mine = 0;
-      top += std::uint32_t(__popc(those));
+      const unsigned pushed = __ballot_sync(all_lanes, mine == farthest);
+      if (mine == farthest) {
+        s.nodes[top + before(pushed)] = e;
+        mine = 0;
+      }
+      top += std::uint32_t(__popc(pushed));
     }
     __syncwarp();
   }
@@ -161,9 +184,12 @@ struct tangent_walk : tree_steps<Tally> {
   __device__ void inside(std::uint32_t begin, bool perhaps) {
     if constexpr (has_interior<typename Tally::part_type>) {
 #pragma unroll 1
-      for (unsigned those = __ballot_sync(all_lanes, perhaps); those != 0; those &= those - 1) {
-        const std::uint32_t k = begin + std::uint32_t(__ffs(int(those))) - 1;
-        if (live && is_inside<Tally>(k, x)) v.offer_inside(k), inner = lower_of(inner, k);
+      for (unsigned lanes = __ballot_sync(all_lanes, perhaps); lanes != 0; lanes &= lanes - 1) {
+        const std::uint32_t k = begin + std::uint32_t(__ffs(int(lanes))) - 1;
+        if (live && is_inside<Tally>(k, x)) {
+          v.offer_inside(k);
+          inner = lower_of(inner, k);
+        }
         __syncwarp();
       }
     }
@@ -176,7 +202,7 @@ struct tangent_walk : tree_steps<Tally> {
     std::uint32_t count = 0;
     if (lane() / 4 < m) {
       e = s.leaves[leaves - 1 - lane() / 4];
-      if (e.distance <= s.all.limit) count = e.node.count();
+      if (e.distance <= s.points.limit) count = e.node.count();
     }
     leaves -= m;
     __syncwarp();  // all have read them
@@ -189,32 +215,42 @@ struct tangent_walk : tree_steps<Tally> {
   }
 
   /// Looks at a primitive in each lane. `finds`: those that may be nearest to a point become candidates.
-  __device__ void examine(primitive_of_part its, bool finds) {
-    const bool has = its.part != none;
+  __device__ void examine(primitive_of_part primitive, bool finds) {
+    const bool has = primitive.part != none;
     vec3 u{};
     real distance = 0, most = 0;
     yardstick mine;
     if (has) {
-      const rigid_transform part_from_cloud = loaded(frame::place(its.part).part_from_cloud);
-      const auto t = steps::whole_primitive(its.part, its.place).tangent_at(part_from_cloud(s.all.middle));
-      u = to_cloud(part_from_cloud, t.direction), distance = t.distance, most = t.most;
-      mine = yardstick(t, u, s.all.radius);
+      const rigid_transform part_from_cloud = loaded(frame::place(primitive.part).part_from_cloud);
+      const auto t =
+          steps::whole_primitive(primitive.part, primitive.place).tangent_at(part_from_cloud(s.points.middle));
+      u = to_cloud(part_from_cloud, t.direction);
+      distance = t.distance;
+      most = t.most;
+      mine = yardstick(t, u, s.points.radius);
     }
+
     const std::uint32_t key = ordered(mine.most), least = least_of(all_lanes, key);
-    if (from_ordered(least) < s.all.best.most) {  // the nearest becomes the yardstick
-      const unsigned those = __ballot_sync(all_lanes, key == least);
+    if (from_ordered(least) < s.points.best.most) {  // the nearest becomes the yardstick
+      const unsigned nearest = __ballot_sync(all_lanes, key == least);
       __syncwarp();  // all have read the last one
-      if (lane() + 1 == std::uint32_t(__ffs(int(those))))
-        s.all.best = mine, s.all.within = most + s.all.radius, s.hint = its, s.all.set_limit(s.reach);
+      if (lane() + 1 == std::uint32_t(__ffs(int(nearest)))) {
+        s.points.best = mine;
+        s.points.within = most + s.points.radius;
+        s.hint = primitive;
+        s.points.set_limit(s.reach);
+      }
       __syncwarp();
     }
-    const bool wanted = has && finds && s.all.keeps(distance, u);
-    const unsigned those = __ballot_sync(all_lanes, wanted);
+
+    const bool wanted = has && finds && s.points.keeps(distance, u);
+    const unsigned added = __ballot_sync(all_lanes, wanted);
     if (wanted) {
-      const std::uint32_t at = candidates + before(those);
-      s.candidates[at] = {u, distance}, s.which[at] = its;
+      const std::uint32_t at = candidates + before(added);
+      s.candidates[at] = {u, distance};
+      s.which[at] = primitive;
     }
-    candidates += std::uint32_t(__popc(those));
+    candidates += std::uint32_t(__popc(added));
     __syncwarp();
   }
 
@@ -227,13 +263,17 @@ struct tangent_walk : tree_steps<Tally> {
       primitive_of_part which{};
       bool keep = begin + lane() < candidates;
       if (keep) {
-        c = s.candidates[begin + lane()], which = s.which[begin + lane()];
-        keep = s.all.keeps(c.distance, c.direction);
+        c = s.candidates[begin + lane()];
+        which = s.which[begin + lane()];
+        keep = s.points.keeps(c.distance, c.direction);
       }
-      const unsigned those = __ballot_sync(all_lanes, keep);
+      const unsigned kept = __ballot_sync(all_lanes, keep);
       __syncwarp();
-      if (keep) s.candidates[left + before(those)] = c, s.which[left + before(those)] = which;
-      left += std::uint32_t(__popc(those));
+      if (keep) {
+        s.candidates[left + before(kept)] = c;
+        s.which[left + before(kept)] = which;
+      }
+      left += std::uint32_t(__popc(kept));
       __syncwarp();
     }
     candidates = left;
@@ -243,20 +283,25 @@ struct tangent_walk : tree_steps<Tally> {
   __device__ bool needs(std::uint32_t j, vec3 e) const {
     const seen_primitive c = s.candidates[j];
     const std::uint32_t part = s.which[j].part;
-    return s.all.may_reach(c.distance, c.direction, e, v.reach(part)) && part != inner;
+    return s.points.may_reach(c.distance, c.direction, e, v.reach(part)) && part != inner;
   }
 
   /// Each point tests the candidates that it may be nearest to, first the nearest to the middle.
   __device__ void measure() {
     std::uint32_t key = no_bound, first = 0;
     for (std::uint32_t j = lane(); j < candidates; j += 32)
-      if (const std::uint32_t d = ordered(s.candidates[j].distance); d < key) key = d, first = j;
+      if (const std::uint32_t d = ordered(s.candidates[j].distance); d < key) {
+        key = d;
+        first = j;
+      }
     const std::uint32_t least = least_of(all_lanes, key);
     first = __shfl_sync(all_lanes, first, __ffs(int(__ballot_sync(all_lanes, key == least))) - 1);
-    const vec3 e = x - s.all.middle;
+
+    const vec3 e = x - s.points.middle;
     unsigned long long mine =
         live && candidates > 0 ? 1ull << first : 0;  // each lane goes over its own, one after the other
     bool chosen = false;
+
 #pragma unroll 1
     for (;;) {
       if (!__any_sync(all_lanes, mine != 0)) {
@@ -279,6 +324,7 @@ struct tangent_walk : tree_steps<Tally> {
       }
       __syncwarp();
     }
+
     candidates = 0;
     __syncwarp();
     limit();
@@ -314,7 +360,10 @@ struct tangent_packets : lone_search<Tally> {
     while (left != 0) {
       if (__popc(left) >= worth_giving && sharing::asked()) {
         const unsigned half = half_of(left);
-        if (sharing::give({packet, half})) left &= ~half, lanes &= ~half;
+        if (sharing::give({packet, half})) {
+          left &= ~half;
+          lanes &= ~half;
+        }
       }
       live = (left >> lone::lane() & 1) != 0;
       const unsigned later = left >> 16 << 16;  // the middle one of neighbours in a row, if it is left
@@ -324,9 +373,9 @@ struct tangent_packets : lone_search<Tally> {
         v = lone::alone(live, x, v);
         break;
       }
-      const bool its = live && way <= 0.02f + 0.1f * gap;
-      tangent_walk<Tally, Visitor>::search(its, index, x, v);
-      left &= ~__ballot_sync(all_lanes, its);
+      const bool near = live && way <= 0.02f + 0.1f * gap;
+      tangent_walk<Tally, Visitor>::search(near, index, x, v);
+      left &= ~__ballot_sync(all_lanes, near);
     }
     return lanes;
   }

@@ -28,7 +28,11 @@ struct tile : point_tile {
   }
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
-    for (std::size_t j = 0; j < tile_points; ++j) x[j] -= origin.x, y[j] -= origin.y, z[j] -= origin.z;
+    for (std::size_t j = 0; j < tile_points; ++j) {
+      x[j] -= origin.x;
+      y[j] -= origin.y;
+      z[j] -= origin.z;
+    }
   }
 };
 
@@ -52,7 +56,10 @@ struct capsule_hull {
   /// Less an origin.
   void subtract(vec3 origin) {
     if (origin == vec3{0, 0, 0}) return;
-    for (extent* box : {&starts, &ends}) box->lower = box->lower - origin, box->upper = box->upper - origin;
+    for (extent* box : {&starts, &ends}) {
+      box->lower = box->lower - origin;
+      box->upper = box->upper - origin;
+    }
   }
   /// May any of them touch a box? There must be a share of the way at which the box between starts and ends overlaps it
   /// along every axis. Up to rounding.
@@ -66,7 +73,8 @@ struct capsule_hull {
     const auto axis = [&](real lower, real upper, real sl, real su, real el, real eu) {
       const real off = beside + slack * (absolute(lower) + absolute(upper) + absolute(sl) + absolute(su) +
                                          absolute(el) + absolute(eu));
-      keep(upper + off - sl, upper + off - el), keep(su - lower + off, eu - lower + off);
+      keep(upper + off - sl, upper + off - el);
+      keep(su - lower + off, eu - lower + off);
     };
     axis(box.lower.x, box.upper.x, starts.lower.x, starts.upper.x, ends.lower.x, ends.upper.x);
     axis(box.lower.y, box.upper.y, starts.lower.y, starts.upper.y, ends.lower.y, ends.upper.y);
@@ -103,14 +111,16 @@ class capsule_tile {
 
   void put(std::size_t j, const capsule& c) {
     const real square = dot(c.along, c.along);
-    starts_.put(j, c.from), ends_.put(j, c.at(1)), along_.put(j, c.along);
+    starts_.put(j, c.from);
+    ends_.put(j, c.at(1));
+    along_.put(j, c.along);
     inverse_[j] = square > 0 ? 1 / square : 0;
     wide_[j] = c.radius + detail::noise_along(c);
   }
   capsule_hull hull() const {
-    capsule_hull all{starts_.box(), ends_.box()};
-    for (std::size_t j = 0; j < points; ++j) all.wide = wide_[j] > all.wide ? wide_[j] : all.wide;
-    return all;
+    capsule_hull around{starts_.box(), ends_.box()};
+    for (std::size_t j = 0; j < points; ++j) around.wide = wide_[j] > around.wide ? wide_[j] : around.wide;
+    return around;
   }
   vec3 start(std::size_t j) const { return starts_[j]; }
 
@@ -132,11 +142,17 @@ class capsule_tile {
   struct places {
     alignas(64) real x[points], y[points], z[points];
 
-    void put(std::size_t j, vec3 p) { x[j] = p.x, y[j] = p.y, z[j] = p.z; }
+    void put(std::size_t j, vec3 p) {
+      x[j] = p.x;
+      y[j] = p.y;
+      z[j] = p.z;
+    }
     vec3 operator[](std::size_t j) const { return {x[j], y[j], z[j]}; }
     extent box() const {
       extent b;
-      spread(x, b.lower.x, b.upper.x), spread(y, b.lower.y, b.upper.y), spread(z, b.lower.z, b.upper.z);
+      spread(x, b.lower.x, b.upper.x);
+      spread(y, b.lower.y, b.upper.y);
+      spread(z, b.lower.z, b.upper.z);
       return b;
     }
   };
@@ -162,10 +178,12 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
         if (hull.may_reach(body.places[k].around, body.answer.reach(k))) return true;
       return false;
     };
+
     hull.subtract(body.origin);
     // The box knows no part whose reach is below minus its size.
     const bool beside = hull.wide == 0 && !hull.may_touch(near, 0);
     if (counted && (hull.empty() || beside || !may_reach_some())) continue;
+
     tile points;  // read apart: in vector code a product in a position may be fused with what follows
     drop_tally again;
     points.load(body.source, i, std::min(capsule_tile::points, end - i), 1, counted ? again : mine);
@@ -176,14 +194,18 @@ void scan_capsules(const Body& body, std::size_t begin, std::size_t end, const e
         t.put(j, points.x[j] == points.x[j] ? body.element(points[j], i + j) : capsule{points[j], {0, 0, 0}, 0});
       hull = t.hull();
     });
-    Survivors those;
+
+    Survivors survivors;
     bool any = false;
     for (std::uint32_t k = 0; k < body.part_count; ++k)
-      if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k)))
-        any = true, those.add(t, around, body.answer.reach(k), k);
+      if (const ball& around = body.places[k].around; hull.may_reach(around, body.answer.reach(k))) {
+        any = true;
+        survivors.add(t, around, body.answer.reach(k), k);
+      }
     if (any)
-      with_vectors(
-          [&] { those.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); }); });
+      with_vectors([&] {
+        survivors.for_each([&](std::size_t j, std::uint32_t parts) { body.visit(t.start(j), i + j, parts); });
+      });
   }
 }
 
@@ -254,16 +276,17 @@ inline bool may_reach(const ball& around, real reach, const extent& box) {
 /// overlaps it. (The slack covers the rounding there, the sums here, and squares that underflow.)
 template <class Body>
 extent within_reach(const Body& body) {
-  extent all;
+  extent box;
   for (std::uint32_t k = 0; k < body.part_count; ++k) {
     const ball& around = body.places[k].around;
     const real most = frames::limit(around, body.answer.reach(k));
     if (!(most >= 0)) continue;
     const auto beyond = [most](real c) { return (most + 0x1p-72f) * (1 + 8 * slack) + absolute(c) * slack; };
     const vec3 c = around.center, r{beyond(c.x), beyond(c.y), beyond(c.z)};
-    all.add(c - r), all.add(c + r);
+    box.add(c - r);
+    box.add(c + r);
   }
-  return all;
+  return box;
 }
 inline bool beside(const extent& a, const extent& b) {
   const bool together = int(a.lower.x <= b.upper.x) & int(b.lower.x <= a.upper.x) & int(a.lower.y <= b.upper.y) &
@@ -285,6 +308,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
   const extent near_robot = within_reach(body);  // spares nearly all boxes the test of every part
   if constexpr (capsule_source<std::remove_cvref_t<decltype(body.source)>>)
     return scan_capsules<tile_survivors>(body, begin, end, near_robot, mine);
+
   for (std::size_t i = begin; i < end; i += tile_points) {
     const std::size_t count = std::min(tile_points, end - i);
     tile t;
@@ -298,6 +322,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
       box = box_of(t);
       loaded = true;
     }
+
     if (body.answer.ended(body.first + std::uint32_t(i))) continue;
     if (beside(box, near_robot)) continue;
     std::uint32_t k = 0;
@@ -308,6 +333,7 @@ void scan_tiles(const Body& body, std::size_t begin, std::size_t end, drop_tally
       t.load(body.source, i, count, 1, uncounted);
       t.subtract(body.origin);
     }
+
     tile_survivors near;
     for (; k < body.part_count; ++k)
       if (may_reach(body.places[k].around, reach(k), box)) near.add(t, body.places[k].around, reach(k), k);
@@ -337,7 +363,10 @@ void sample_tiles(const Body& body, std::size_t tiles, Descend descend) {
       std::size_t nearest = 0;
       real least = infinity;
       for (std::size_t j = 0; j < tile_points; ++j)
-        if (away[j] < least) least = away[j], nearest = j;
+        if (away[j] < least) {
+          least = away[j];
+          nearest = j;
+        }
       if (may_reach(body.places[k].around, reach(k), t[nearest])) descend(t[nearest], index(n, nearest), k);
     }
   }

@@ -33,12 +33,12 @@ struct alignas(16) yardstick {
 /// Points in a box, and what is known of them.
 struct alignas(16) surroundings {
   vec3 middle;
-  real limit = infinity;  ///< From the middle, for anything that matters to any point.
-  vec3 half;              ///< Of the box.
+  real limit = infinity;  ///< How far from the middle something may be that matters to any point.
+  vec3 half;              ///< Half the box, axis by axis.
   real noise;  ///< More than the rounding of two transforms of a point, and of products with ways from the middle.
   yardstick best;
-  real within = infinity;  ///< For each point, the yardstick's distance at most.
-  real radius;             ///< Of a ball around them.
+  real within = infinity;  ///< No point is farther from the yardstick.
+  real radius;             ///< Radius of a ball around the points, from the middle.
 
   /// `reach`: the largest of the points'.
   CLEARANCE_HD void set_limit(real reach) { limit = min(within, reach) + radius + noise; }
@@ -56,14 +56,14 @@ struct alignas(16) surroundings {
 
 /// A part as seen from the middle of points.
 struct seen_part {
-  real distance;  ///< At least so far away is everything of it,
-  real noise;     ///< and so much it adds to that of the surroundings.
+  real distance;  ///< Everything of the part is at least this far away.
+  real noise;     ///< What the part adds to the noise of the surroundings.
 
   /// `around`: a ball around the part; `q`: the middle in the part's frame.
-  CLEARANCE_HD seen_part(const surroundings& all, const ball& around, vec3 q) {
-    const real gap = rough_length(all.middle - around.center), size = around.radius + gap + rough_length(q);
+  CLEARANCE_HD seen_part(const surroundings& points, const ball& around, vec3 q) {
+    const real gap = rough_length(points.middle - around.center), size = around.radius + gap + rough_length(q);
     distance = lowered(gap - around.radius, size);
-    noise = 2 * slack * (rough_length(all.middle) + size + 2 * all.radius);
+    noise = 2 * slack * (rough_length(points.middle) + size + 2 * points.radius);
   }
 };
 

@@ -23,7 +23,7 @@ struct basic_near_first {
     walk(tree, p, q, pending);
   }
 
-  /// The same with the caller's stack of `stack_need(tree)` entries.
+  /// The same walk with the caller's stack of `stack_need(tree)` entries.
   template <hierarchy H, visitor Q>
   CLEARANCE_HD static void walk(const H& tree, vec3 p, Q& q, entry_of<H>* pending) {
     using entry = entry_of<H>;

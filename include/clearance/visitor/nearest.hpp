@@ -20,7 +20,10 @@ struct nearest {
 
   CLEARANCE_HD real reach() const { return within; }
   CLEARANCE_HD void offer(std::uint32_t id, real distance) {
-    if (distance < within || (distance == within && id < best)) within = distance, best = id;
+    if (distance < within || (distance == within && id < best)) {
+      within = distance;
+      best = id;
+    }
   }
   CLEARANCE_HD result_type result() const { return {within, best}; }
 };

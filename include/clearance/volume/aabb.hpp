@@ -42,10 +42,10 @@ struct aabb {
   /// Outside along the way from the box. Inside along the axis of the nearest face.
   CLEARANCE_HD tangent tangent_at(vec3 q) const {
     const vec3 below = lower - q, above = q - upper;
-    const box_sides all{
+    const box_sides sides{
         {rough_max(below.x, above.x), rough_max(below.y, above.y), rough_max(below.z, above.z)},
         {choice(above.x < below.x, -1, 1), choice(above.y < below.y, -1, 1), choice(above.z < below.z, -1, 1)}};
-    return all.tangent_of_box();
+    return sides.tangent_of_box();
   }
 
   /// Outside it measures from the box. Inside it is true for any reach but minus infinity.

@@ -50,9 +50,9 @@ struct obb {
   /// Outside along the way from the box. Inside along the axis of the nearest face.
   CLEARANCE_HD tangent tangent_at(vec3 q) const {
     const vec3 d = q - center, local{dot(axis[0], d), dot(axis[1], d), dot(axis[2], d)};
-    const box_sides all{{absolute(local.x) - half[0], absolute(local.y) - half[1], absolute(local.z) - half[2]},
-                        {choice(local.x < 0, -1, 1), choice(local.y < 0, -1, 1), choice(local.z < 0, -1, 1)}};
-    const tangent t = all.tangent_of_box();
+    const box_sides sides{{absolute(local.x) - half[0], absolute(local.y) - half[1], absolute(local.z) - half[2]},
+                          {choice(local.x < 0, -1, 1), choice(local.y < 0, -1, 1), choice(local.z < 0, -1, 1)}};
+    const tangent t = sides.tangent_of_box();
     // The axes are orthonormal to 1e-7 only.
     return {t.distance - slack * absolute(t.distance),
             fma(t.direction.x, axis[0], fma(t.direction.y, axis[1], scaled(t.direction.z, axis[2])))};

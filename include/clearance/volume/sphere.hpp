@@ -29,13 +29,18 @@ struct sphere {
       return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     };
     const auto reach = [&](const ball& b) { return away(b) + b.radius; };
+
     const int steps = balls.size() > 1 ? 128 : 0;
     for (int k = 1; k <= steps; ++k) {
       const ball* farthest = &balls[0];
       double most = reach(*farthest);
       for (const ball& b : balls)
-        if (const double r = reach(b); r > most) farthest = &b, most = r;
+        if (const double r = reach(b); r > most) {
+          farthest = &b;
+          most = r;
+        }
       if (!(most > 0)) break;
+
       // A step towards the far side of that ball: the one that would centre it, damped.
       const double along = away(*farthest);
       if (!(along > 0)) break;
@@ -44,8 +49,11 @@ struct sphere {
       c[1] += step * (farthest->center.y - c[1]);
       c[2] += step * (farthest->center.z - c[2]);
     }
+
     const vec3 center{to_float(c[0]), to_float(c[1]), to_float(c[2])};
-    c[0] = center.x, c[1] = center.y, c[2] = center.z;
+    c[0] = center.x;
+    c[1] = center.y;
+    c[2] = center.z;
     double radius = 0;
     for (const ball& b : balls) radius = std::max(radius, reach(b));
     return {center, std::nextafter(real(radius * (1 + 2.0 * slack) + vanishing), infinity)};
