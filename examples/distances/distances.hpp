@@ -2,8 +2,8 @@
 #pragma once
 // How far is every point of a cloud from a robot, and from which of its links?
 
-#include <clearance/cells.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/distances_per_part.hpp>

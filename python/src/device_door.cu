@@ -3,7 +3,7 @@
 
 #include "on_device.cuh"
 
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 
 namespace {
 

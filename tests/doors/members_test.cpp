@@ -3,9 +3,9 @@
 #include "doors/refusals.hpp"
 #include "solid/shapes.hpp"
 
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/robot/joint_chain.hpp>
 #include <clearance/separation.hpp>

@@ -8,8 +8,8 @@
 
 #include <clearance/chunked_query.hpp>
 #include <clearance/deadline.hpp>
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/in_collisions.hpp>
