@@ -82,6 +82,7 @@ Interface& backend_robot::prepared(const typename Interface::question_type& q, b
     kept = std::shared_ptr<Interface>(make(other_volume ? memory_->other() : memory_->usual(), other_volume, q));
     build = memory_->build, upload = memory_->upload;
     without_field = memory_->without_field, fields = memory_->fields, fields_cached = memory_->fields_cached;
+    without_cells = memory_->without_cells, cells = memory_->cells, cells_bytes = memory_->cells_bytes;
   }
   return *static_cast<Interface*>(kept.get());
 }

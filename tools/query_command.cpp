@@ -182,7 +182,10 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.clouds = &clouds.files;
   report.bodies = &bodies;
   shown.show("asking");
-  const asked_model model{asked.model, asked.volume, &bodies};
+  const asked_model model{.model = asked.model,
+                          .volume = asked.volume,
+                          .bodies = &bodies,
+                          .cells = asked.cells && asked.on_device};  // a host looks into none
   auto there = robot_on(asked.on_device, model);
   if (ranks) there->join(*ranks, asked.alike);
   report.upload = there->see(clouds.seen);
@@ -198,6 +201,10 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (ranks) ranks->part();
   if (!speaks) return 0;
   report.build = there->build;
+  report.cells = there->cells, report.cells_bytes = there->cells_bytes;
+  for (std::size_t k = 0; k < there->without_cells.size(); ++k)
+    if (const std::string& why_not = there->without_cells[k]; !why_not.empty())
+      report.notes.push_back("--cells: link " + io::quoted(bodies[k].name) + ": " + why_not);
   report.upload += there->upload;
   if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen
     for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
