@@ -49,7 +49,7 @@ int example(const Backend& on) {
   clearance::query sooner(on, there, clearance::distances{});
   // [cells]
   if (sooner(poses, wall).distance != clearance::ask(on, robot, poses, wall, clearance::distances{}).distance ||
-      listed.model.parts()[0].cells.empty())
+      listed.model.cells().empty())
     return 1;
 
   for (std::size_t i = 0; i < wall.size(); ++i) {

@@ -12,7 +12,7 @@ namespace forms_device_test {
 using namespace testing;
 using clearance::host, clearance::device, clearance::devices;
 
-TEST_CASE("One call, prepared questions and two devices give the bits of the host, with near maps and without") {
+TEST_CASE("One call, prepared questions and two devices give the bits of the host") {
   verdict v;
   const device gpu{};
   const devices two{0, 0};
