@@ -89,6 +89,9 @@ Interface& backend_robot::prepared(const typename Interface::question_type& q, b
     without_field = memory_->without_field;
     fields = memory_->fields;
     fields_cached = memory_->fields_cached;
+    without_cells = memory_->without_cells;
+    cells = memory_->cells;
+    cells_bytes = memory_->cells_bytes;
   }
   return *static_cast<Interface*>(kept.get());
 }

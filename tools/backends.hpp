@@ -86,6 +86,7 @@ struct asked_model {
   const std::vector<body>* bodies = nullptr;
   field_use fields = field_use::none;
   std::filesystem::path cache = {};  // a folder for fields; empty: they are not kept
+  bool cells = false;                // of all bodies: a device looks into them
 };
 
 class all_ranks;
@@ -148,6 +149,9 @@ class backend_robot {
   // After `plan` with fields: for each body that can have none the reason, else empty words. Then none is used.
   std::vector<std::string> without_field;
   std::size_t fields = 0, fields_cached = 0;  // that are used; and how many of them the cache had
+  // With cells: for each body that can have none the reason; how many bodies have some, and their bytes.
+  std::vector<std::string> without_cells;
+  std::size_t cells = 0, cells_bytes = 0;
 
   // Seconds: for the last question; so far for building trees; and for moving them to where the backend reads them.
   double query = 0, build = 0, upload = 0;

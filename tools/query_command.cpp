@@ -185,7 +185,10 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.clouds = &clouds.files;
   report.bodies = &bodies;
   shown.show("asking");
-  const asked_model model{asked.model, asked.volume, &bodies};
+  const asked_model model{.model = asked.model,
+                          .volume = asked.volume,
+                          .bodies = &bodies,
+                          .cells = asked.cells && asked.on_device};  // a host looks into none
   auto robot_there = robot_on(asked.on_device, model);
   if (ranks) robot_there->join(*ranks, asked.alike);
   report.upload = robot_there->see(clouds.seen);
@@ -207,6 +210,11 @@ int run(const query_options& asked, all_ranks* ranks) {
   if (!speaks) return 0;
 
   report.build = robot_there->build;
+  report.cells = robot_there->cells;
+  report.cells_bytes = robot_there->cells_bytes;
+  for (std::size_t k = 0; k < robot_there->without_cells.size(); ++k)
+    if (const std::string& why_not = robot_there->without_cells[k]; !why_not.empty())
+      report.notes.push_back("--cells: link " + io::quoted(bodies[k].name) + ": " + why_not);
   report.upload += robot_there->upload;
   if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen
     for (const observation& cloud : clouds.files) cloud.recount(report.found.result);

@@ -29,7 +29,7 @@ struct raw_options {
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales,
       cloud_scales, ranges, sensors, calibrations;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
-       gradient = false, shard = false, is_signed = false, between = false;
+       gradient = false, shard = false, is_signed = false, between = false, cells = false;
 };
 
 /// A number that is not negative.
@@ -181,7 +181,7 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.distances = raw.distances;
   if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
     throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
-  o.is_signed = raw.is_signed;
+  o.is_signed = raw.is_signed, o.cells = raw.cells;
   if (o.is_signed && o.model != model_kind::triangles)
     throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
   if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);
@@ -488,6 +488,10 @@ void add_query_questions(CLI::App& app, raw_options& raw) {
       "(or 1 m) and beyond");
   app.add_flag("--signed", raw.is_signed,
                "With --distances and --model triangles: below 0 inside a closed mesh, by how deep; without it 0 there");
+  app.add_flag(
+      "--cells", raw.cells,
+      "With --distances on a GPU: list around each link first which spheres or triangles can be nearest (up to "
+      "64 MiB and a second a link). Distances take less time then, and every answer is the same");
   app.add_option("--nearest", raw.nearest,
                  "How many points to list of each link, the nearest first, with what is certain of each");
   app.add_option(

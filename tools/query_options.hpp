@@ -108,6 +108,7 @@ struct query_options {
   std::size_t min_points = 1;  // for a zone to count
   std::string distances;       // --distances: a file; empty: not asked
   bool is_signed = false;      // --signed, for --distances
+  bool cells = false;          // --cells, the same
   std::size_t nearest = 0;     // --nearest: points to list per part
   double d_max = clearance::infinity;
   std::optional<double> self_filter;        // --self-filter: points within this many metres are the robot's own

@@ -102,6 +102,7 @@ std::string to_json(const query_report& report) {
   out["points"] = counts(r);
   out["model"] = to_string(report.asked->model);
   out["volume"] = to_string(report.asked->volume);
+  if (report.cells > 0) out["cells"] = {{"links", report.cells}, {"bytes", report.cells_bytes}};
   out["backend"] = report.asked->on_device ? "device" : "host";
   out["seconds"] = {{"load", report.load},
                     {"pack", report.pack},

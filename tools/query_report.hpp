@@ -36,6 +36,7 @@ struct query_report {
   std::optional<clearance::unseen_result> unseen;
   std::vector<part_gradient> gradients;  // of all parts; empty: not asked
   std::optional<distances_written> distances;
+  std::size_t cells = 0, cells_bytes = 0;                       // as backend_robot says
   double load = 0, pack = 0, build = 0, upload = 0, query = 0;  // seconds; query: for the least distance
   std::vector<std::string> notes;
 

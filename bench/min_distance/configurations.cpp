@@ -4,7 +4,7 @@
 // after another.
 #include "configurations.hpp"
 
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>

@@ -8,7 +8,7 @@
 
 #include <clearance/backends/own_stream.cuh>
 #include <clearance/device.cuh>
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/volume/aabb.hpp>

@@ -149,9 +149,7 @@ void making_cells(benchmark::State& state, Make make) {
   double bytes = 0;
   for (auto _ : state) {
     bytes = 0;
-    for (const auto& part : clearance::with_cells(device{}, model).model.parts())
-      bytes += double(part.cells.nodes.size() * sizeof(clearance::cell_node) +
-                      part.cells.entries.size() * sizeof(clearance::cell_entry));
+    for (const auto& cells : clearance::with_cells(device{}, model).model.cells()) bytes += double(cells.bytes());
   }
   state.counters["MB"] = bytes / 1e6;
 }

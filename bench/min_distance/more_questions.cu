@@ -7,9 +7,9 @@
 
 #include <clearance/compacted.cuh>
 #include <clearance/device.cuh>
-#include <clearance/fields.hpp>
 #include <clearance/io/joint_chain.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distance_supported.hpp>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 // A robot whose parts have tables besides their trees.
-#include <clearance/cells.hpp>
 #include <clearance/device.cuh>
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 
 namespace bench {
 
@@ -22,9 +21,11 @@ void with_tables(const clearance::device& gpu, Model model, tables its, const F&
     auto made = clearance::with_fields(gpu, std::move(model));
     have(made.without), model = std::move(made.model);
   }
-  if (!its.cells) return f(model.on(gpu));
-  const auto made = clearance::with_cells(gpu, std::move(model));
-  have(made.without), f(made.model.on(gpu));
+  if (its.cells) {
+    auto made = clearance::with_cells(gpu, std::move(model));
+    have(made.without), model = std::move(made.model);
+  }
+  f(model.on(gpu));
 }
 
 }  // namespace bench

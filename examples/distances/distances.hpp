@@ -2,8 +2,8 @@
 #pragma once
 // How far is every point of a cloud from a robot, and from which of its links?
 
-#include <clearance/cells.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/distances_per_part.hpp>
@@ -49,7 +49,7 @@ int example(const Backend& on) {
   clearance::query sooner(on, there, clearance::distances{});
   // [cells]
   if (sooner(poses, wall).distance != clearance::ask(on, robot, poses, wall, clearance::distances{}).distance ||
-      listed.model.parts()[0].cells.empty())
+      listed.model.cells().empty())
     return 1;
 
   for (std::size_t i = 0; i < wall.size(); ++i) {

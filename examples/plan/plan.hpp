@@ -2,8 +2,8 @@
 #pragma once
 // Is a planned trajectory still free in the newest frame, and where is it not?
 
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>

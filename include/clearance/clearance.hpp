@@ -5,14 +5,13 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
-#include <clearance/cells.hpp>
 #include <clearance/chunked_query.hpp>
 #include <clearance/compacted.hpp>
 #include <clearance/deadline.hpp>
-#include <clearance/fields.hpp>
 #include <clearance/gradient.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/points/camera.hpp>
 #include <clearance/points/depth_image.hpp>

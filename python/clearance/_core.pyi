@@ -52,6 +52,15 @@ class Robot:
     def has_fields(self) -> bool:
         """Was it made by with_fields, and are they used?"""
 
+    def with_cells(self, bytes: object | None = 67108864, reach: float = 4.0, device: str = 'cpu') -> Robot:
+        """
+        The same robot with cells around each part, of at most so many bytes, as far as reach (metres): a GPU tells every point's distance in less time then, and no answer changes. device: where they are made, "cpu" (seconds a part) or "cuda:0". A part that can have none keeps its tree alone, and `notes` say why.
+        """
+
+    @property
+    def has_cells(self) -> bool:
+        """Was it made by with_cells, and has a part some?"""
+
     @property
     def name(self) -> str: ...
 

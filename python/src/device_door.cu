@@ -3,7 +3,7 @@
 
 #include "on_device.cuh"
 
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 
 namespace {
 
@@ -16,16 +16,21 @@ std::shared_ptr<void> upload(const robot_trees<>& trees, int device) {
   return std::const_pointer_cast<robot_trees<clearance::device>>(made);
 }
 
-std::shared_ptr<const robot_trees<>> sample(const robot_trees<>& trees, std::size_t bytes,
-                                            std::vector<std::string>& without, int device) {
+std::shared_ptr<const robot_trees<>> with_near_map(const robot_trees<>& trees, const near_map_options& options,
+                                                   std::vector<std::string>& without, int device) {
   const clearance::own_stream stream(device);
   return std::visit(
-      [&](const auto& model) {
-        auto sampled = clearance::with_fields(stream.on(), model, {bytes});
-        without = std::move(sampled.without);
-        return std::make_shared<const robot_trees<>>(std::move(sampled.model));
+      [&]<class Options>(const auto& model, const Options& its) {
+        auto made = [&] {
+          if constexpr (std::is_same_v<Options, clearance::field_options>)
+            return clearance::with_fields(stream.on(), model, its);
+          else
+            return clearance::with_cells(stream.on(), model, its);
+        }();
+        without = std::move(made.without);
+        return std::make_shared<const robot_trees<>>(std::move(made.model));
       },
-      trees);
+      trees, options);
 }
 
 void* prepare_any(const char* type, const std::shared_ptr<void>& trees, const void* question, int device) {
@@ -68,7 +73,7 @@ int holder(const void* memory) {
 }  // namespace
 
 const device_door& this_door() {
-  static const device_door door{upload, sample, prepare_any, allocate, order, bring, fetch, wait, holder};
+  static const device_door door{upload, with_near_map, prepare_any, allocate, order, bring, fetch, wait, holder};
   return door;
 }
 

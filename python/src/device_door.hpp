@@ -5,14 +5,17 @@
 #include "asker.hpp"
 
 #include <string>
+#include <variant>
 #include <vector>
+
+using near_map_options = std::variant<clearance::field_options, clearance::cell_options>;
 
 struct device_door {
   /// A robot's trees in a device's memory.
   std::shared_ptr<void> (*upload)(const robot_trees<>& trees, int device);
-  /// The same trees with fields of so many bytes, sampled on a device; for each part that has none, why.
-  std::shared_ptr<const robot_trees<>> (*sample)(const robot_trees<>& trees, std::size_t bytes,
-                                                 std::vector<std::string>& without, int device);
+  /// The same trees with fields or cells, made on a device; for each part that has none, why.
+  std::shared_ptr<const robot_trees<>> (*with_near_map)(const robot_trees<>& trees, const near_map_options& options,
+                                                        std::vector<std::string>& without, int device);
   /// An asker<Q> for the question whose type has this name; nullptr if the module does not know it.
   void* (*prepare)(const char* type, const std::shared_ptr<void>& trees, const void* question, int device);
   /// Memory of a device, aligned for anything. Giving it back waits until nothing on the device can use it.

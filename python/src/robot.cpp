@@ -12,6 +12,7 @@
 #include <clearance/io/mesh.hpp>
 #include <clearance/io/part_radii.hpp>
 #include <clearance/io/spheres_file.hpp>
+#include <clearance/near_maps.hpp>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
@@ -213,24 +214,59 @@ std::shared_ptr<robot_model> from_spheres(const nb::dict& given, double gap, dou
   return made;
 }
 
+template <class Model>
+std::shared_ptr<const robot_trees<>> owned(Model model) {
+  return std::make_shared<const robot_trees<>>(std::move(model));
+}
+
 /// The trees with fields, from the cache or sampled on a device; `without` says why a part has none.
-std::shared_ptr<const robot_trees<>> fielded_trees(const robot_trees<>& trees, std::size_t bytes, int device,
+std::shared_ptr<const robot_trees<>> fielded_trees(const robot_trees<>& trees, const field_options& options, int device,
                                                    const io::field_cache& cache, std::vector<std::string>& without) {
-  const auto owned = [](auto model) { return std::make_shared<const robot_trees<>>(std::move(model)); };
   return std::visit(
       [&](const auto& bare) {
         if (device == on_the_host) {
-          auto made = io::with_fields_cached(host{}, bare, {bytes}, cache);
+          auto made = io::with_fields_cached(host{}, bare, options, cache);
           without = std::move(made.without);
           return owned(std::move(made.model));
         }
-        if (auto kept = io::with_kept_fields(bare, {bytes}, cache); kept.found > 0) return owned(std::move(kept.model));
-        const auto made = open_device_door().sample(trees, bytes, without, device);
+        if (auto kept = io::with_kept_fields(bare, options, cache); kept.found > 0) return owned(std::move(kept.model));
+        const auto made = open_device_door().with_near_map(trees, options, without, device);
         const auto& model = std::get<std::remove_cvref_t<decltype(bare)>>(*made);
         for (std::size_t k = 0; k < model.fields().size(); ++k) cache.keep(model.parts()[k], model.fields()[k]);
         return made;
       },
       trees);
+}
+
+/// The trees with cells, made on a device; `without` says why a part has none.
+std::shared_ptr<const robot_trees<>> celled_trees(const robot_trees<>& trees, const cell_options& options, int device,
+                                                  std::vector<std::string>& without) {
+  if (device != on_the_host) return open_device_door().with_near_map(trees, options, without, device);
+  return std::visit(
+      [&](const auto& bare) {
+        auto made = with_cells(host{}, bare, options);
+        without = std::move(made.without);
+        return owned(std::move(made.model));
+      },
+      trees);
+}
+
+/// The same robot, made again by `maker`, with the trees that `make(without)` returns. Of a part of which `without`
+/// says why it has none there is a note, which ends with `so`.
+template <class Make>
+std::shared_ptr<robot_model> mapped_robot(const robot_model& robot, const char* maker, nb::object recipe,
+                                          const Make& make, const char* so) {
+  const auto made = std::make_shared<robot_model>();
+  made->maker = maker, made->recipe = std::move(recipe);
+  const nb::gil_scoped_release others;
+  made->name = robot.name, made->names = robot.names, made->bodies = robot.bodies, made->notes = robot.notes;
+  made->description = robot.description, made->spheres = robot.spheres;
+  std::vector<std::string> without;
+  made->trees = make(without);
+  for (std::size_t k = 0; k < without.size(); ++k)
+    if (!without[k].empty())
+      made->notes.push_back("part " + io::quoted((*robot.names)[k]) + ": " + without[k] + "; " + so);
+  return made;
 }
 
 /// A robot that Python holds, with fields.
@@ -239,23 +275,21 @@ std::shared_ptr<robot_model> fielded_robot(const nb::object& self, nb::handle by
   const auto& robot = nb::cast<const robot_model&>(self);
   const std::size_t size = count_of(bytes, "bytes");
   const int where = device_number(device);
-  const auto made = std::make_shared<robot_model>();
-  made->maker = "with_fields";
-  made->recipe = nb::make_tuple(self, size, "cpu", cache);  // on any machine: no answer depends on where
-  const nb::gil_scoped_release others;
-  made->name = robot.name, made->names = robot.names, made->bodies = robot.bodies, made->notes = robot.notes;
-  made->description = robot.description, made->spheres = robot.spheres;
-  std::vector<std::string> without;
-  made->trees =
-      fielded_trees(*robot.trees, size, where,
-                    io::field_cache(cache ? io::packing_cache::usual_folder() : std::filesystem::path()), without);
-  made->has_fields = true;
-  for (std::size_t k = 0; k < without.size(); ++k) {
-    if (without[k].empty()) continue;
-    made->has_fields = false;
-    made->notes.push_back("part " + io::quoted((*robot.names)[k]) + ": " + without[k] + "; so no field is used");
-  }
-  return made;
+  const io::field_cache kept(cache ? io::packing_cache::usual_folder() : std::filesystem::path());
+  return mapped_robot(
+      robot, "with_fields", nb::make_tuple(self, size, "cpu", cache),  // on any machine: no answer depends on where
+      [&](auto& without) { return fielded_trees(*robot.trees, {size}, where, kept, without); }, "so no field is used");
+}
+
+/// One with cells.
+std::shared_ptr<robot_model> celled_robot(const nb::object& self, nb::handle bytes, double reach,
+                                          const std::string& device) {
+  const auto& robot = nb::cast<const robot_model&>(self);
+  const std::size_t size = count_of(bytes, "bytes");
+  const int where = device_number(device);
+  return mapped_robot(
+      robot, "with_cells", nb::make_tuple(self, size, reach, "cpu"),
+      [&](auto& without) { return celled_trees(*robot.trees, {size, reach}, where, without); }, "so it has none");
 }
 
 const io::kinematic_tree& joints_of(const robot_model& robot) { return robot.described().kinematics(); }
@@ -522,8 +556,19 @@ void bind_robot(nb::module_& m) {
           "less time then, and no answer changes. device: where it is sampled, \"cpu\" (seconds a part) or \"cuda:0\"; "
           "once, and kept in the cache. If a part can have none, none is used, and `notes` say why.")
       .def_prop_ro(
-          "has_fields", [](const robot_model& r) { return r.has_fields; },
+          "has_fields",
+          [](const robot_model& r) { return std::visit([](const auto& m) { return !m.fields().empty(); }, *r.trees); },
           "Was it made by with_fields, and are they used?")
+      .def(
+          "with_cells", &celled_robot, nb::arg("bytes").none() = cell_options{}.bytes,
+          nb::arg("reach") = cell_options{}.reach, nb::arg("device") = "cpu",
+          "The same robot with cells around each part, of at most so many bytes, as far as reach (metres): a GPU tells "
+          "every point's distance in less time then, and no answer changes. device: where they are made, \"cpu\" "
+          "(seconds a part) or \"cuda:0\". A part that can have none keeps its tree alone, and `notes` say why.")
+      .def_prop_ro(
+          "has_cells",
+          [](const robot_model& r) { return std::visit([](const auto& m) { return !m.cells().empty(); }, *r.trees); },
+          "Was it made by with_cells, and has a part some?")
       .def_prop_ro("name", [](const robot_model& r) { return r.name; })
       .def_prop_ro("model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; })
       .def_prop_ro(

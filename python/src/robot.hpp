@@ -27,7 +27,7 @@ struct robot_model {
   std::vector<clearance::io::body> bodies;
   std::optional<clearance::io::robot> description;  ///< Of a URDF file.
   std::vector<std::string> notes;
-  bool spheres = true, has_fields = false;
+  bool spheres = true;
   const char* maker = nullptr;  ///< What makes it again, and
   nb::object recipe;            ///< its arguments, for pickle.
 

@@ -296,6 +296,16 @@ def test_fields_sampled_on_a_device_change_no_bit(scene):
                 assert bits(one) == bits(other), (question, device)
 
 
+def test_cells_made_on_a_device_change_no_bit(scene):
+    celled = scene.robot.with_cells(4_000_000, 1.0, device=GPU)
+    assert celled.has_cells
+    for question in clearance.Distances(which=True), clearance.Distances(d_max=0.2), clearance.Within(0.2):
+        for device in "cpu", GPU:
+            one, other = (clearance.Query(robot, question, device=device)(**scene.seen(), **scene.where("Distances"))
+                          for robot in (scene.robot, celled))
+            assert bits(one) == bits(other), (question, device)
+
+
 def test_fields_are_views(small):
     robot, poses, points = small
     ask = clearance.Query(robot, clearance.MinDistance(), device=GPU)

@@ -14,7 +14,7 @@ import robots
 from geometry import IDENTITY, apply, compose, distance_range, inverse, quaternion
 from strict import Unknown, demand, lines_of, number, text_of, whole
 
-FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between", "--fields", "--strict"}
+FLAGS = {"--ignore-limits", "--use-viewpoint", "--zero-is-missing", "--no-cache", "--json", "--merge", "--allow-overlap", "--csv", "--gradient", "--between", "--fields", "--cells", "--strict"}
 PER_CLOUD = {"--camera-pose", "--camera-link", "--intrinsics", "--depth-scale", "--range", "--use-viewpoint", "--zero-is-missing", "--cloud-scale"}
 SINGLE = {
     "query": {"--robot", "--joints", "--geometry", "--base-pose", "--model", "--volume", "--spheres", "--packing", "--cache", "--backend",

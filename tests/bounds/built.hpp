@@ -6,7 +6,7 @@
 
 #include <clearance/bvh/build.hpp>
 #include <clearance/cloud_tree/host_tree.hpp>
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/volume/sphere.hpp>
 

@@ -7,8 +7,8 @@
 #include "support/closed.hpp"
 #include "support/same_answer.hpp"
 
-#include <clearance/cells.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/signed_distances.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/obb.hpp>
@@ -19,6 +19,12 @@ namespace testing {
 inline real beside(real x, dice& d) {
   const unsigned side = d.below(3);
   return side == 0 ? x : std::nextafter(x, side == 1 ? infinity : -infinity);
+}
+
+/// The cells of a part; empty ones if it has none.
+template <class Model>
+clearance::cells<> cells_of(const Model& model, std::size_t k) {
+  return model.cells().empty() ? clearance::cells<>() : model.cells()[k];
 }
 
 /// Robots with cells, and their laws.
@@ -36,7 +42,7 @@ struct cells_law {
     for (std::size_t k = 0; k < model.size(); ++k) {
       const std::string& why_not = made.without[k];
       v.require(why_not.empty() || !needed, what, ": ", why_not);
-      v.require(made.model.parts()[k].cells.empty() == !why_not.empty(), what, ": cells, and a sentence why not");
+      v.require(cells_of(made.model, k).empty() == !why_not.empty(), what, ": cells, and a sentence why not");
       ++(why_not.empty() ? with : without);
     }
     return std::move(made.model);
@@ -46,12 +52,14 @@ struct cells_law {
   void check(const Model& model, dice& d, const std::string& what, int looks = 1500) {
     for (std::size_t k = 0; k < model.size(); ++k) {
       const auto part = model.parts()[k].view();
-      if (part.cells.nodes == nullptr) continue;
+      const auto its = cells_of(model, k);
+      const auto cells = its.view();
+      if (its.empty()) continue;
       const std::span primitives(model.parts()[k].tree.primitives.data(), model.parts()[k].tree.primitives.size());
       const std::string which = what + ", part " + std::to_string(k);
       for (int i = 0; i < looks; ++i)
-        look(part, part.cells, primitives, probe(part.facts, part.cells, primitives, d, i), which);
-      v.require(part.cells({clearance::not_a_number, 0, 0}).node.kind == clearance::cell_kind::unlisted, which,
+        look(part, cells, primitives, probe(part.facts, cells, primitives, d, i), which);
+      v.require(cells({clearance::not_a_number, 0, 0}).node.kind == clearance::cell_kind::unlisted, which,
                 ": NaN is in a cell");
     }
   }

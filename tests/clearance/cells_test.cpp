@@ -86,19 +86,18 @@ TEST_CASE("Cells take the memory that they may, or there are none") {
     const auto made = law.equip(robot, std::to_string(bytes) + " bytes", {bytes, 0});
     law.check(made, d, std::to_string(bytes) + " bytes", 3000);
     CHECK(law.leaves[0] == 0);
-    const auto& its = made.parts()[0].cells;
-    return its.nodes.size() * sizeof(clearance::cell_node) + its.entries.size() * sizeof(clearance::cell_entry);
+    return made.cells()[0].bytes();
   };
   const std::size_t all = size_of(1 << 24), some = size_of(all * 3 / 4);
   CHECK((all < 1 << 24 && some <= all * 3 / 4));
   const auto none = with_cells(host{}, robot, {1000, 0});
   CHECK(none.without[0] == "1000 bytes are too few for cells of its 112 primitives");
-  CHECK(none.model.parts()[0].cells.empty());
+  CHECK((cells_of(none.model, 0).empty() && none.model.view().cells == nullptr));
   CHECK(with_cells(host{}, robot, {(std::size_t(1) << 34) + 1, 0}).without[0] ==
         "17179869185 bytes are too many for cells; they take at most 17179869184");
   const auto poorly = with_cells(poor{}, robot, {1 << 24, 0});
   CHECK(poorly.without[0] == "there is not enough memory to make its cells");
-  CHECK(poorly.model.parts()[0].cells.empty());
+  CHECK((cells_of(poorly.model, 0).empty() && poorly.model.view().cells == nullptr));
 }
 
 TEST_CASE("Cells reach no less than 0, and not beyond all numbers") {
@@ -114,8 +113,8 @@ TEST_CASE("Cells reach no less than 0, and not beyond all numbers") {
   refused(std::numeric_limits<double>::infinity(), "inf");
   for (const double reach : {0.0, 0.7}) {
     const auto made = with_cells(host{}, robot, {1 << 21, reach}).model;
-    REQUIRE(!made.parts()[0].cells.empty());
-    const auto cells = made.parts()[0].cells.view();
+    REQUIRE(!cells_of(made, 0).empty());
+    const auto cells = made.cells()[0].view();
     const auto& facts = robot.parts()[0].facts;
     const auto listed = [&](real share) {
       const real away = share * (facts.radius + real(reach));
@@ -135,7 +134,8 @@ TEST_CASE("A part without a size has no cells") {
     const auto made = with_cells(host{}, clearance::model{std::vector{part, other}}, {1 << 21, 0.5});
     CHECK(made.without[0].empty());
     CHECK(made.without[1] == "a part without a finite size has no cells");
-    CHECK((!made.model.parts()[0].cells.empty() && made.model.parts()[1].cells.empty()));
+    CHECK((!cells_of(made.model, 0).empty() && cells_of(made.model, 1).empty()));
+    CHECK(made.model.view().cells[1].nodes == nullptr);
   }
 }
 
@@ -143,7 +143,7 @@ TEST_CASE("Copies of a robot keep their cells; so do parts that may be elsewhere
   const auto part = fifty_spheres();
   const clearance::model bare{std::vector{part, part}};
   auto robot = with_cells(host{}, bare, {1 << 21, 0.5}).model;
-  const auto nodes = [](const auto& view, std::size_t k) { return view.parts[k].cells.nodes; };
+  const auto nodes = [](const auto& view, std::size_t k) { return view.cells[k].nodes; };
   const auto view = robot.view();
   REQUIRE((nodes(view, 0) != nullptr && nodes(view, 0) != nodes(view, 1)));
 

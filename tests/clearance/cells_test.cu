@@ -11,7 +11,7 @@
 #include <clearance/backends/device_buffer.cuh>
 #include <clearance/chunked_query.hpp>
 #include <clearance/device.cuh>
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/questions/distances.hpp>
 
@@ -129,7 +129,7 @@ TEST_CASE("Where all lists would be too long there are no cells, and distances a
       std::vector{clearance::make_part(clearance::build<clearance::sphere>(std::vector(300, one)))}};
   const auto made = clearance::with_cells(check.gpu, bare, {1 << 22, 1});
   CHECK(made.without[0] == "4194304 bytes are too few for cells of its 300 primitives");
-  CHECK(made.model.parts()[0].cells.empty());
+  CHECK(made.model.view().cells == nullptr);
   const auto points = scattered(check.d, 500, 1);
   require_same_distances(check.gpu, bare, made.model.on(check.gpu), {check.d.pose(0.1)}, point_span(points), 1,
                          check.law.v, "300 equal ones");
@@ -238,7 +238,7 @@ TEST_CASE("By cells and fields: distances are the same with both, in either orde
   const std::vector poses{d.pose(0.5), d.pose(1.5)};
   const auto points = scattered(d, 5000, 2);
   for (const auto* robot : {&both, &turned}) {
-    REQUIRE((robot->view().fields != nullptr && !robot->parts()[0].cells.empty()));
+    REQUIRE((robot->view().fields != nullptr && robot->view().cells != nullptr));
     require_same_distances(gpu, bare, robot->on(gpu), poses, point_span(points), 1, v, "fields and cells");
     require_no_change_of_pairs(gpu, bare, robot->on(gpu), poses, point_span(points), 1, v, "fields and cells");
   }
@@ -305,7 +305,7 @@ TEST_CASE("By cells: a cloud in chunks, and several devices") {
   const devices several{0, 0};
   const auto bare = solid_robot(2, 0);
   const auto celled = clearance::with_cells(gpu, bare, {1 << 24, 1}).model;
-  REQUIRE(!celled.parts()[0].cells.empty());
+  REQUIRE(!celled.cells().empty());
   const std::vector poses{d.pose(0.5), d.pose(1.5)};
   const auto points = scattered(d, 20000, 2);
   clearance::chunked cloud(point_span(points), 1 << 12);

@@ -7,8 +7,8 @@
 #include "support/configurations.hpp"
 #include "support/same_answer.hpp"
 
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>

@@ -49,6 +49,8 @@ TEST_CASE("A part that can have no field says why, and then no part has one") {
   const clearance::model alone{std::vector{part}};
   const auto both = clearance::attach(host{}, whole, alone);
   CHECK(both.view().fields == nullptr);
+  const auto twice = clearance::attach(host{}, whole, whole);
+  CHECK((twice.view().fields != nullptr && twice.view().fields[1].cells == whole.view().fields[0].cells));
 }
 
 TEST_CASE("Without enough memory for a field there is a sentence, and the answer of the robot without it") {

@@ -3,9 +3,9 @@
 #include "doors/refusals.hpp"
 #include "solid/shapes.hpp"
 
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/packing/pack.hpp>
 #include <clearance/robot/joint_chain.hpp>
 #include <clearance/separation.hpp>
@@ -148,6 +148,10 @@ TEST_CASE("primitives, trees and parts that contradict themselves are refused") 
   };
   const auto foreign = with_fields(host{}, model{std::vector{other}}, {1 << 15}).model.fields()[0];
   of_fields("another part's field", [&](auto& all) { all[1] = foreign; });
+  const auto its_cells = [](const auto& its) { return with_cells(host{}, its, {1 << 20, 0.1}).model.cells(); };
+  r.check(
+      "another part's cells", its_cells(robot), [&](const auto& all) { model(robot).set_cells(all); },
+      [&](auto& all) { all[1] = its_cells(model{std::vector{other}})[0]; });
   of_fields("a field of fewer cells", [](auto& all) { all[0].cells.pop_back(); });
 }
 

@@ -8,8 +8,8 @@
 
 #include <clearance/chunked_query.hpp>
 #include <clearance/deadline.hpp>
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/in_collisions.hpp>
@@ -81,23 +81,35 @@ void ask_everything(const F& f, const Make& make = {}) {
   }
 }
 
-/// A robot, and the same one with fields.
+/// The same robot with fields, with cells, or with both.
+template <class Model>
+Model with_near_maps(Model model, bool fields = true, bool cells = true) {
+  if (fields) model = clearance::with_fields(clearance::host{}, std::move(model), {1 << 15}).model;
+  if (cells) model = clearance::with_cells(clearance::host{}, std::move(model), {1 << 20, 0.3}).model;
+  return model;
+}
+/// A robot, and the same one in all three ways.
 template <class Model>
 struct with_and_without {
-  Model bare, fielded;
+  Model bare, mapped[3];
 
   explicit with_and_without(const Model& model)
-      : bare(model), fielded(clearance::with_fields(clearance::host{}, model, {1 << 15}).model) {}
+      : bare(model), mapped{with_near_maps(model, true, false), with_near_maps(model, false), with_near_maps(model)} {}
 };
-/// Asks `once(robot, question, frames)` about robots with fields and without: the answers must be the same bits.
+/// Asks `once(robot, question, frames)` about robots with near maps and without: the answers must be the same bits.
 template <class Once>
-void check_fields_change_nothing(verdict& v, const Once& once) {
+void check_near_maps_change_nothing(verdict& v, const Once& once) {
   std::size_t asked = 0;
   ask_everything(
       [&](const char* name, const auto& q, const auto& robots, const moving_frames& f) {
-        v.require(robots.fielded.view().fields != nullptr && robots.bare.view().fields == nullptr, name, ": no field");
-        v.require(same_answer(once(robots.bare, q, f), once(robots.fielded, q, f)), name, ", frame ", f.number,
-                  ": with fields");
+        const auto bare = once(robots.bare, q, f);
+        for (int maps = 0; maps < 3; ++maps) {
+          const auto view = robots.mapped[maps].view();
+          v.require((view.fields != nullptr) == (maps != 1) && (view.cells != nullptr) == (maps != 0), name,
+                    ": no map");
+          v.require(same_answer(bare, once(robots.mapped[maps], q, f)), name, ", frame ", f.number, ": with maps ",
+                    maps);
+        }
         ++asked;
       },
       [](const auto& model) { return with_and_without(model); });

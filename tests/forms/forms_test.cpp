@@ -43,9 +43,9 @@ TEST_CASE("On the host, prepared questions, chunks and complete deadlines give t
   CHECK(asked == 6 * 18);
 }
 
-TEST_CASE("Fields change no bit of any answer") {
+TEST_CASE("Near maps change no bit of any answer") {
   verdict v;
-  check_fields_change_nothing(v, []<class Q>(const auto& model, const Q& q, const moving_frames& f) {
+  check_near_maps_change_nothing(v, []<class Q>(const auto& model, const Q& q, const moving_frames& f) {
     clearance::query prepared(host{2}, model, q);
     prepared(f.s.poses, f.here());
     return typename Q::result(prepared(f.s.poses, f.here()));

@@ -17,7 +17,7 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
   const device gpu{};
   const devices two{0, 0};
   std::size_t asked = 0;
-  ask_everything([&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
+  const auto ask_all_forms = [&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
     const std::string what = std::string(name) + ", frame " + std::to_string(f.number);
     const auto there = model.on(gpu);
     const auto expected = ask(host{}, model, f.s.poses, f.here(), q);
@@ -40,14 +40,16 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
       v.require(known.unseen == 0 && same_answer(expected, known.result), what, ": by a deadline");
     }
     ++asked;
-  });
-  CHECK(asked == 6 * 18);
+  };
+  for (const bool maps : {false, true})
+    ask_everything(ask_all_forms, [&](const auto& model) { return maps ? with_near_maps(model) : model; });
+  CHECK(asked == 2 * 6 * 18);
 }
 
-TEST_CASE("On a device fields change no bit of any answer") {
+TEST_CASE("On a device near maps change no bit of any answer") {
   verdict v;
   const device gpu{};
-  check_fields_change_nothing(v, [&]<class Q>(const auto& model, const Q& q, const moving_frames& f) {
+  check_near_maps_change_nothing(v, [&]<class Q>(const auto& model, const Q& q, const moving_frames& f) {
     const auto there = model.on(gpu);
     clearance::query prepared(gpu, there, q);
     if (f.number % 2 == 1) prepared(f.s.poses, f.here());

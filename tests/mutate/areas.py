@@ -14,7 +14,6 @@ HALF_DEVICE = ["scan/block.cuh"]  # read by kernels alone
 ASKED = ["frames/bracket", "minimum/minimum", "minimum/prepared", "questions/distances", "questions/unseen"]
 TESTS = {
     "*": ASKED,
-    "fields.hpp": ["clearance/fields", "minimum/prepared"],
     "ground/*": ["primitive/primitives", "volume/volumes", "minimum/minimum", "minimum/prepared", "frames/far"],
     "ground/pose.hpp": ["minimum/merge", "io/joint_chain", "minimum/minimum", "frames/far"],
     "ground/chain_rounding.hpp": ["io/joint_chain", "io/robot_words", "io/kinematics"],
@@ -45,6 +44,7 @@ TESTS = {
     "concepts/tree.hpp": ["minimum/minimum", "bvh/build", "questions/min_distances"],
     "concepts/tangent.hpp": ["scan/tangents", "volume/volumes"],
     "minimum/*": ["frames/bracket", "minimum/minimum", "minimum/prepared", "minimum/merge", "frames/too_close"],
+    "minimum/field_sample.hpp": ["clearance/fields", "minimum/prepared"],
     "minimum/chunked*.hpp": ["clearance/chunked_query", "questions/uncertain_forms"],
     "minimum/merge.hpp": ["clearance/deadline", "minimum/merge"],
     "minimum/shared_bounds.hpp": ["minimum/prepared", "clearance/deadline"],

@@ -5,9 +5,9 @@
 #include "support/closed.hpp"
 #include "support/configurations.hpp"
 
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>

@@ -5,9 +5,9 @@
 #include "support/configurations.hpp"
 
 #include <clearance/device.cuh>
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/in_collisions.hpp>
 #include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/unseen.hpp>

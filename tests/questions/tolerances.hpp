@@ -9,8 +9,8 @@
 #include "support/same_result.hpp"
 
 #include <clearance/deadline.hpp>
-#include <clearance/fields.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/distances_per_part.hpp>
 #include <clearance/questions/min_distance_supported.hpp>

@@ -4,6 +4,8 @@
 #include "tools/two_boxes.hpp"
 #include "tools/written_distances.hpp"
 
+#include <clearance/io/error.hpp>
+
 #include <array>
 #include <cmath>
 
@@ -103,6 +105,20 @@ TEST_CASE("--scene shows the points in the colours of their distances") {
   };
   CHECK(read(plain.path).size() == read(coloured.path).size());
   CHECK(read(plain.path) != read(coloured.path));
+}
+
+TEST_CASE("--cells changes no answer, and is for --distances") {
+  const two_boxes q;
+  const scratch_file ply(".ply"), other(".ply");
+  for (const std::string d_max : {"", " --d-max 0.3"}) {
+    auto plain = parsed(run_command(q.ask + d_max + " --distances " + ply.path)),
+         with = parsed(run_command(q.ask + d_max + " --cells --distances " + other.path));
+    CHECK(with.at("distances").at("points") == 3);
+    for (auto* j : {&plain, &with}) j->erase("seconds"), j->at("distances").erase("file");
+    CHECK(with == plain);
+    CHECK(clearance::io::read_bytes(other.path) == clearance::io::read_bytes(ply.path));
+  }
+  refuses(q.ask + " --cells", "--cells: is for --distances");
 }
 
 TEST_CASE("--signed says how deep points are in a mesh") {

@@ -40,8 +40,8 @@ struct backend_memory {
   virtual std::span<const clearance::part_facts> facts() = 0;
 
   // See backend_robot.
-  std::vector<std::string> without_field;
-  std::size_t fields = 0, fields_cached = 0;
+  std::vector<std::string> without_field, without_cells;
+  std::size_t fields = 0, fields_cached = 0, cells = 0, cells_bytes = 0;
   double build = 0, upload = 0;
 };
 std::unique_ptr<backend_memory> memory_on_host(const asked_model& asked);

@@ -9,6 +9,7 @@
 #include <clearance/io/field_cache.hpp>
 #include <clearance/io/robot_bodies.hpp>
 #include <clearance/make_model.hpp>
+#include <clearance/near_maps.hpp>
 
 #include <ranges>
 
@@ -46,10 +47,10 @@ class memory_on final : public backend_memory {
     if (usual_) return usual_;
     if (asked_.model == model_kind::spheres)
       usual_ = std::make_shared<const trees>(
-          moved([&](const auto& b) { return fielded(trees_of_spheres<clearance::sphere>(b)); }));
+          moved([&](const auto& b) { return mapped(trees_of_spheres<clearance::sphere>(b)); }));
     else
       usual_ = std::make_shared<const trees>(
-          moved([&](const auto& b) { return fielded(trees_of_triangles<clearance::obb>(b)); }));
+          moved([&](const auto& b) { return mapped(trees_of_triangles<clearance::obb>(b)); }));
     return usual_;
   }
   std::shared_ptr<const void> other() override {
@@ -82,16 +83,29 @@ class memory_on final : public backend_memory {
     upload += clock.lap();
     return moved_model;
   }
+  /// The robot with the near maps that are asked for.
   template <class Robot>
-  Robot fielded(Robot robot) {
-    if (asked_.fields == field_use::none) return robot;
-    const clearance::io::field_cache cache(asked_.cache);
-    auto made = asked_.fields == field_use::always ? clearance::io::with_fields_cached(on_, std::move(robot), {}, cache)
-                                                   : clearance::io::with_kept_fields(std::move(robot), {}, cache);
-    without_field = std::move(made.without);
-    fields = made.model.fields().size();
-    fields_cached = fields == 0 ? 0 : made.found;
-    return std::move(made.model);
+  Robot mapped(Robot robot) {
+    if (asked_.fields != field_use::none) {
+      const clearance::io::field_cache cache(asked_.cache);
+      auto made = asked_.fields == field_use::always
+                      ? clearance::io::with_fields_cached(on_, std::move(robot), {}, cache)
+                      : clearance::io::with_kept_fields(std::move(robot), {}, cache);
+      without_field = std::move(made.without);
+      fields = made.model.fields().size();
+      fields_cached = fields == 0 ? 0 : made.found;
+      robot = std::move(made.model);
+    }
+    if (asked_.cells) {
+      auto made = clearance::with_cells(on_, std::move(robot));
+      without_cells = std::move(made.without);
+      robot = std::move(made.model);
+      for (const auto& of_part : robot.cells()) {
+        cells += !of_part.empty();
+        cells_bytes += of_part.bytes();
+      }
+    }
+    return robot;
   }
 
   Backend on_;

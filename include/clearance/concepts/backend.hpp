@@ -6,6 +6,8 @@
 
 #include <concepts>
 #include <cstddef>
+#include <exception>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -30,5 +32,17 @@ concept backend = requires(const B on, std::size_t n, void (*one)(std::size_t), 
   on.stage(input, there);
   { on.reads(there) } -> std::same_as<bool>;
 };
+
+namespace detail {
+
+/// Did memory end, on the host or where `on` runs?
+template <backend B>
+bool out_of_memory(const B& on, const std::exception& error) {
+  if constexpr (requires { on.out_of_memory(error); })
+    if (on.out_of_memory(error)) return true;
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+}
+
+}  // namespace detail
 
 }  // namespace clearance

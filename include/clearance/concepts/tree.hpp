@@ -56,7 +56,7 @@ concept tangent_primitive = primitive<P> && requires(const P p, vec3 q) {
   { p.tangent_at(q) } -> std::same_as<primitive_tangent>;
 };
 
-/// A primitive that tells its core: see core_place. Parts of such primitives can have cells (cells.hpp).
+/// A primitive that tells its core: see core_place. Parts of such primitives can have cells (near_maps.hpp).
 template <class P>
 concept cored_primitive = tangent_primitive<P> && requires(const P p, vec3 q) {
   { p.core_at(q) } -> std::same_as<core_place>;

@@ -2,11 +2,11 @@
 #pragma once
 // Keeps the fields of a robot's parts in files, so that they are sampled only once.
 
-#include <clearance/fields.hpp>
 #include <clearance/io/digest.hpp>
 #include <clearance/io/kept_files.hpp>
 #include <clearance/io/sealed_file.hpp>
 #include <clearance/io/write_file.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/primitive/triangle.hpp>
 #include <clearance/solid/winding.hpp>
@@ -141,7 +141,7 @@ field<host> take_field(byte_reader& in, const Part& part, std::size_t number, co
   if (bytes > in.left())
     refuse(file, of + " is said to be of " + std::to_string(bytes) + " bytes, which are not there");
   std::string why_not;
-  auto made = clearance::detail::field_of(part, {std::size_t(bytes)}, why_not);
+  auto made = minimum::field_of(part, {std::size_t(bytes)}, why_not);
   if (!made) refuse(file, of + ": " + why_not);
   if (field_key(part, made->shape) != key) refuse(file, of + " is of another part, or of another version of clearance");
   if (count != made->shape.all_cubes())
@@ -237,7 +237,7 @@ class field_cache {
   template <class Part>
   static std::pair<digest, std::optional<field<host>>> of(const Part& part, const field_options& options) {
     std::string why_not;
-    auto unfilled = clearance::detail::field_of(part, options, why_not);
+    auto unfilled = minimum::field_of(part, options, why_not);
     return {unfilled ? field_key(part, unfilled->shape) : digest{}, std::move(unfilled)};
   }
 
@@ -261,7 +261,7 @@ cached_fields<model<Part>> with_fields_cached(const B& on, model<Part> robot, co
       ++found;
       return kept;
     }
-    field<host> fresh = clearance::detail::sampled_field(on, part, options, why_not);
+    field<host> fresh = minimum::sampled_field(on, part, options, why_not);
     cache.keep(part, fresh);
     return fresh;
   });

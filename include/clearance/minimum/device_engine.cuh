@@ -117,15 +117,22 @@ class device_search {
   template <bool PerPart, class Source, class Place>
   void start(const Source& source, std::uint32_t group, const frames::turn& now, const ending& end,
              const Place& place) {
+    using around = decltype(scan::elements_of(source));
+    if constexpr (cored_hierarchy<typename PartView::hierarchy_type> && std::is_same_v<around, scan::as_points>)
+      if (launch_.has_cells()) return start_as<least<celled_view<PartView>, PerPart>>(source, group, now, end, place);
+    start_as<least<PartView, PerPart, around>>(source, group, now, end, place);
+  }
+  template <class Tally, class Source, class Place>
+  void start_as(const Source& source, std::uint32_t group, const frames::turn& now, const ending& end,
+                const Place& place) {
     const bool alone = launch_.groups() == 1;
     const std::uint32_t before = group * scan::most_parts;
-    const auto around = scan::elements_of(source);
-    auto a = launch_.template begin<least<PartView, PerPart, std::remove_const_t<decltype(around)>>>(
+    auto a = launch_.template begin<Tally>(
         group, now,
         {state_.data() + group, witnesses_.data() + before,
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
-         PerPart ? end.minima + before : nullptr, launch_.fields(group), around});
+         Tally::bound_per_part ? end.minima + before : nullptr, launch_.fields(group), scan::elements_of(source)});
     if (alone) a.done = end.done, a.number = end.number;
     place(a);
     launch_(source, a);

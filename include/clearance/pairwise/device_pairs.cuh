@@ -255,6 +255,11 @@ struct pairs_of {
   }
 };
 
+/// Is a kernel that looks into cells made for such answers? One that ends, or labels, walks few pairs, and was no
+/// quicker by it (bench/records/h100/with_cells.txt).
+template <answer Answer>
+inline constexpr bool gains_by_cells = !ending_answer<Answer> && !labelling_answer<Answer>;
+
 /// Every pair on a device, frame after frame, with one kernel per cloud. It allocates nothing and never waits.
 template <class PartView>
 class device_pairs {
@@ -269,12 +274,24 @@ class device_pairs {
   template <class Clouds, answer Answer, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer,
                point_counts* counts, const Here& here) {
+    if constexpr (cored_hierarchy<typename PartView::hierarchy_type> && gains_by_cells<Answer>)
+      if (launch_.has_cells()) return pass<celled_view<PartView>>(poses, clouds, answer, counts, here);
+    pass<PartView>(poses, clouds, answer, counts, here);
+  }
+
+ private:
+  /// `View`: as the kernels see parts. Those of capsules look into no cells.
+  template <class View, class Clouds, class Answer, class Here>
+  void pass(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Answer& answer, point_counts* counts,
+            const Here& here) {
     launch_.pass(
         facts_, poses, clouds,
         [&]<point_source S>(const S& source, std::uint32_t group, const frames::turn& now) {
           if constexpr (labelling_answer<Answer>) static_assert(points_alone<S>());
           const auto around = scan::elements_of(source);
-          return launch_.template begin<pairs_of<PartView, Answer, std::remove_const_t<decltype(around)>>>(
+          using around_type = std::remove_const_t<decltype(around)>;
+          using view = std::conditional_t<std::is_same_v<around_type, scan::as_points>, View, PartView>;
+          return launch_.template begin<pairs_of<view, Answer, around_type>>(
               group, now,
               {answer, group * scan::most_parts, launch_.fields(group), group == 0 ? counts : nullptr, labelled_.data(),
                group + 1 == launch_.groups(), around});
@@ -282,7 +299,6 @@ class device_pairs {
         here);
   }
 
- private:
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
   device_buffer<label_counts> labelled_;

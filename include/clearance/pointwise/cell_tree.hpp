@@ -205,17 +205,6 @@ struct enter_candidates {
   }
 };
 
-}  // namespace clearance::pointwise
-
-namespace clearance {
-
-struct cell_options {
-  std::size_t bytes = std::size_t(64) << 20;  ///< Memory for each part, at most; up to 16 GiB.
-  double reach = 4;                           ///< Metres around a part's ball that its cells cover.
-};
-
-namespace pointwise {
-
 template <backend B, class PartView>
 class cell_tree {
  public:
@@ -235,6 +224,7 @@ class cell_tree {
     shape.step = rounded_up(side / (1u << cells_view::deepest)), shape.inverse = real(1 / double(shape.step));
     const real half = shape.step * real(1u << (cells_view::deepest - 1));
     shape.low = {facts.center.x - half, facts.center.y - half, facts.center.z - half};
+    made_.around = {facts.center, facts.radius};
     made_.nodes.resize(cells_view::in_table);
   }
 
@@ -388,6 +378,28 @@ class cell_tree {
   std::size_t leaves_ = 0, unlisted_ = 0;
 };
 
-}  // namespace pointwise
+/// Makes the cells of one part; it says why not otherwise. Throws std::invalid_argument for a reach that cannot be.
+template <backend B, class Part>
+cells<host> made_cells(const B& on, const Part& part, const cell_options& options, std::string& why_not) {
+  const part_facts& facts = part.facts;
+  if (!(options.reach >= 0 && options.reach < 1e6))
+    throw std::invalid_argument("clearance::with_cells: cells reach " + std::to_string(options.reach) +
+                                " m, which must be from 0 to 1,000,000");
+  constexpr std::uint64_t most = std::uint64_t(1) << 34;  // entries are numbered in 32 bits
+  if (options.bytes > most)
+    return why_not = std::to_string(options.bytes) + " bytes are too many for cells; they take at most " +
+                     std::to_string(most),
+           cells<host>{};
+  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
+    return why_not = "a part without a finite size has no cells", cells<host>{};
+  try {
+    const auto there = part.on(on);
+    return cell_tree(on, there.view(), facts, part.tree.primitives.size(), options).make(why_not);
+  } catch (const std::exception& error) {
+    if (!detail::out_of_memory(on, error)) throw;
+    why_not = "there is not enough memory to make its cells";
+  }
+  return {};
+}
 
-}  // namespace clearance
+}  // namespace clearance::pointwise

@@ -16,10 +16,10 @@
 namespace clearance::pointwise {
 
 /// The nearest primitive of a point: the part's number, or ~0u, and the primitive's place in its tree.
-template <class PartView>
+template <hierarchy H>
 struct remembered {
   std::uint32_t part;
-  typename scan::node_of<typename PartView::hierarchy_type>::place place;
+  typename scan::node_of<H>::place place;
 };
 
 template <class PartView, scan::packets_by How>
@@ -37,10 +37,10 @@ struct points_of {
   struct arguments {
     distances_out out;
     real d_max;
-    std::uint32_t first_part;    ///< The kernel's first part. If it is not 0, other kernels have written before.
-    point_counts* counts;        ///< Or null.
-    remembered<PartView>* last;  ///< Per point, the nearest in the last frame, then in this one; or null.
-    const field_view* fields;    ///< One for each of the kernel's parts, or null.
+    std::uint32_t first_part;          ///< The kernel's first part. If it is not 0, other kernels have written before.
+    point_counts* counts;              ///< Or null.
+    remembered<hierarchy_type>* last;  ///< Per point, the nearest in the last frame, then in this one; or null.
+    const field_view* fields;          ///< One for each of the kernel's parts, or null.
   };
   struct memory {
     __device__ void clear(std::uint32_t) {}
@@ -84,7 +84,7 @@ struct points_of {
   static __device__ void remind(const block& s, std::uint32_t index, vec3 x, visitor_type& v) {
     const arguments& a = s.head.answer;
     if (a.last != nullptr) {
-      const remembered<PartView> last = a.last[index];
+      const remembered<hierarchy_type> last = a.last[index];
       if (const std::uint32_t k = last.part - a.first_part; k < s.head.parts) {
         using parts = scan::tree_steps<points_of>;
         const real d = parts::primitive(k, last.place).distance(parts::place(k).part_from_cloud(x));
@@ -99,7 +99,7 @@ struct points_of {
   static __device__ scan::primitive_of_part known(const block& s, std::uint32_t index) {
     const arguments& a = s.head.answer;
     if (a.last == nullptr) return {none, 0};
-    const remembered<PartView> last = a.last[index];
+    const remembered<hierarchy_type> last = a.last[index];
     if constexpr (std::is_same_v<place_type, std::uint32_t>)
       return {last.part == none ? none : last.part - a.first_part, last.place};
     return {none, 0};
@@ -153,9 +153,10 @@ class device_points {
   template <class Clouds, class Here>
   distance_certainty enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                              real d_max, point_counts* counts, const Here& here) {
-    if constexpr (has_cells<PartView>) return pass<scan::packets_by::cells>(poses, clouds, out, d_max, counts, here);
+    if constexpr (cored_hierarchy<hierarchy_type>)
+      if (launch_.has_cells()) return pass<scan::packets_by::cells>(poses, clouds, out, d_max, counts, here);
     if (remembers_) make_room(clouds);
-    if constexpr (scan::tangent_hierarchy<typename PartView::hierarchy_type>)
+    if constexpr (scan::tangent_hierarchy<hierarchy_type>)
       if (by_tangents.value_or(d_max == infinity && worth_tangents(clouds)))
         return pass<scan::packets_by::tangents>(poses, clouds, out, d_max, counts, here);
     return pass<scan::packets_by::bounds>(poses, clouds, out, d_max, counts, here);
@@ -165,7 +166,7 @@ class device_points {
   void forget() {
     const device_guard guard(on_.id);
     if (last_.size() != 0)
-      check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<PartView>), on_.stream),
+      check_cuda(cudaMemsetAsync(last_.data(), 0xff, last_.size() * sizeof(remembered<hierarchy_type>), on_.stream),
                  "cudaMemsetAsync");
   }
 
@@ -173,6 +174,8 @@ class device_points {
   std::optional<bool> by_tangents;
 
  private:
+  using hierarchy_type = typename PartView::hierarchy_type;
+
   /// A walk by tangents takes fewer steps, but a few packets take long, and with few points a frame waits for those.
   /// Tiles of an image are compact, so that they gain with any number. (Measured: docs/distances.md.)
   template <class Clouds>
@@ -187,12 +190,13 @@ class device_points {
   template <scan::packets_by How, class Clouds, class Here>
   distance_certainty pass(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const distances_out& out,
                           real d_max, point_counts* counts, const Here& here) {
-    using tally = points_of<PartView, How>;
+    constexpr bool by_cells = How == scan::packets_by::cells;
+    using tally = points_of<std::conditional_t<by_cells, celled_view<PartView>, PartView>, How>;
     return certainty_of(launch_.pass(
         facts_, poses, clouds,
         [&](const auto& source, std::uint32_t group, const frames::turn& now) {
           // Many points do not wait for their first primitives.
-          const bool look_up = How != scan::packets_by::cells && d_max == infinity && source.size() < 1u << 20;
+          const bool look_up = !by_cells && d_max == infinity && source.size() < 1u << 20;
           return launch_.template begin<tally>(group, now,
                                                {out, d_max, group * scan::most_parts, group == 0 ? counts : nullptr,
                                                 last_.data(), look_up ? launch_.fields(group) : nullptr});
@@ -205,7 +209,7 @@ class device_points {
     std::size_t points = 0;
     for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) { points += source.size(); });
     if (points <= last_.size()) return;
-    device_buffer<remembered<PartView>> larger(points, on_.id, memory_);
+    device_buffer<remembered<hierarchy_type>> larger(points, on_.id, memory_);
     outgrown_.push_back(std::exchange(last_, std::move(larger)));  // a graph may have captured it
     forget();
   }
@@ -215,8 +219,8 @@ class device_points {
   bool remembers_;
   std::vector<part_facts> facts_;
   scan::launcher<PartView> launch_;
-  device_buffer<remembered<PartView>> last_;
-  std::vector<device_buffer<remembered<PartView>>> outgrown_;
+  device_buffer<remembered<hierarchy_type>> last_;
+  std::vector<device_buffer<remembered<hierarchy_type>>> outgrown_;
 };
 
 /// On a device: the kernel of packets, which remembers the primitive nearest to each point.

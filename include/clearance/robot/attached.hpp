@@ -22,16 +22,39 @@ class attached {
     std::vector<PartView> views = on.copy_out(robot.parts, robot.size());
     for (const PartView& its : on.copy_out(object.parts, object.size())) views.push_back(its);
     views_ = on.copy_in(std::span<const PartView>(views));
+    if (robot.fields != nullptr && object.fields != nullptr)
+      fields_ = on.copy_in(std::span<const field_view>(both(on, robot, robot.fields, object, object.fields)));
+    if (robot.cells != nullptr || object.cells != nullptr)
+      cells_ = on.copy_in(std::span<const cells_view>(both(on, robot, robot.cells, object, object.cells)));
   }
 
   std::size_t size() const { return facts_.size(); }
-  model_view<PartView> view() const& CLEARANCE_LIFETIMEBOUND { return {views_.data(), facts_, depth_, width_}; }
+  model_view<PartView> view() const& CLEARANCE_LIFETIMEBOUND {
+    return {views_.data(),
+            facts_,
+            depth_,
+            width_,
+            fields_.size() == 0 ? nullptr : fields_.data(),
+            cells_.size() == 0 ? nullptr : cells_.data()};
+  }
   model_view<PartView> view() const&& = delete;  // it would be gone when the view is read; give it a name
 
  private:
+  /// Views of both robots' near maps; of null empty ones.
+  template <class Map>
+  static std::vector<Map> both(const B& on, const model_view<PartView>& robot, const Map* its,
+                               const model_view<PartView>& object, const Map* of_object) {
+    std::vector<Map> maps = its == nullptr ? std::vector<Map>(robot.size()) : on.copy_out(its, robot.size());
+    const auto rest = of_object == nullptr ? std::vector<Map>(object.size()) : on.copy_out(of_object, object.size());
+    maps.insert(maps.end(), rest.begin(), rest.end());
+    return maps;
+  }
+
   std::vector<part_facts> facts_;
   std::uint32_t depth_, width_;
   typename B::template buffer<PartView> views_;
+  typename B::template buffer<field_view> fields_ = {};
+  typename B::template buffer<cells_view> cells_ = {};
 };
 
 namespace detail {

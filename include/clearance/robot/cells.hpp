@@ -108,6 +108,11 @@ struct cells_view {
   }
 };
 
+struct cell_options {
+  std::size_t bytes = std::size_t(64) << 20;  ///< Memory for each part, at most; up to 16 GiB.
+  double reach = 4;                           ///< Metres around a part's ball that its cells cover.
+};
+
 /// Owns what a cells_view reads, in the memory of one backend.
 template <class B = host>
 struct cells {
@@ -116,8 +121,10 @@ struct cells {
   typename B::template buffer<cell_node> nodes;
   typename B::template buffer<cell_entry> entries;
   cells_view shape;  ///< Its pointers are set by `view()`.
+  ball around = {};  ///< The part's.
 
   bool empty() const { return nodes.size() == 0; }
+  std::size_t bytes() const { return nodes.size() * sizeof(cell_node) + entries.size() * sizeof(cell_entry); }
   cells_view view() const {
     cells_view v = shape;
     v.nodes = nodes.data(), v.entries = entries.data();
@@ -126,35 +133,20 @@ struct cells {
   template <backend Other>
   cells<Other> on(const Other& other) const {
     return {other.copy_in(std::span<const cell_node>(nodes)), other.copy_in(std::span<const cell_entry>(entries)),
-            shape};
+            shape, around};
   }
 };
 
-/// A part as a kernel sees it, with cells.
+/// A part and its cells as a device's kernel sees them that looks into cells. Others see the part alone.
 template <class PartView>
 struct celled_view : PartView {
   cells_view cells;
 };
 
-/// Has a part cells?
+/// Does a kernel that sees such parts look into cells?
 template <class PartView>
-inline constexpr bool has_cells = requires(const PartView part) {
-  { part.cells } -> std::convertible_to<const cells_view&>;
-};
-
-/// A part with cells, of a type of its own: so code for others stays as it is. See with_cells.
-template <class Part, class B = host>
-struct celled : Part {
-  clearance::cells<B> cells;
-
-  auto view() const {
-    const auto its = Part::view();
-    return celled_view<std::remove_const_t<decltype(its)>>{its, cells.view()};
-  }
-  template <backend Other>
-  auto on(const Other& other) const {
-    return celled<decltype(Part::on(other)), Other>{Part::on(other), cells.on(other)};
-  }
-};
+inline constexpr bool has_cells = false;
+template <class PartView>
+inline constexpr bool has_cells<celled_view<PartView>> = true;
 
 }  // namespace clearance

@@ -85,6 +85,10 @@ struct field_view {
   }
 };
 
+struct field_options {
+  std::size_t bytes = std::size_t(1) << 20;  ///< Memory for each part, about.
+};
+
 /// Owns what a field_view reads, in the memory of one backend.
 template <class B = host>
 struct field {

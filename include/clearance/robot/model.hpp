@@ -3,7 +3,7 @@
 // A robot as every question takes it: its parts, in the memory of one backend.
 
 #include <clearance/ground/borrowed.hpp>
-#include <clearance/robot/field.hpp>
+#include <clearance/robot/near_maps.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -22,11 +22,17 @@ struct model_view {
   borrowed<part_facts> facts;
   std::uint32_t depth, width;          ///< The largest over all trees.
   const field_view* fields = nullptr;  ///< One per part, or null.
+  const cells_view* cells = nullptr;   ///< The same.
 
   std::size_t size() const { return facts.size(); }
   /// A robot of part k alone.
   model_view part(std::size_t k) const {
-    return {parts + k, facts.subspan(k, 1), depth, width, fields == nullptr ? nullptr : fields + k};
+    return {parts + k,
+            facts.subspan(k, 1),
+            depth,
+            width,
+            fields == nullptr ? nullptr : fields + k,
+            cells == nullptr ? nullptr : cells + k};
   }
 };
 
@@ -116,7 +122,7 @@ class model {
   model(const model& other)
     requires std::copy_constructible<Part>
       : model(other.parts_) {
-    set_fields(other.fields_);
+    near_ = near_maps<B>(other.near_);
   }
   model(model&&) = default;
   model& operator=(model other) {
@@ -125,39 +131,25 @@ class model {
     std::swap(views_, other.views_);
     std::swap(depth_, other.depth_);
     std::swap(width_, other.width_);
-    std::swap(fields_, other.fields_);
-    std::swap(field_views_, other.field_views_);
+    std::swap(near_, other.near_);
     return *this;
   }
 
   const std::vector<Part>& parts() const { return parts_; }
   std::size_t size() const { return parts_.size(); }
   model_view<view_type> view() const& CLEARANCE_LIFETIMEBOUND {
-    return {views_.data(), facts_, depth_, width_, fields_.empty() ? nullptr : field_views_.data()};
+    return {views_.data(), facts_, depth_, width_, near_.field_views(), near_.cells_views()};
   }
   model_view<view_type> view() const&& = delete;  // the model would be gone when the view is read; give it a name
   /// One per part, or none.
-  const std::vector<field<B>>& fields() const { return fields_; }
+  const std::vector<field<B>>& fields() const { return near_.fields(); }
+  const std::vector<clearance::cells<B>>& cells() const { return near_.cells(); }
   /// One field per part, see with_fields. If one is empty, none is used. Throws std::invalid_argument if one was made
   /// for another part.
-  void set_fields(std::vector<field<B>> fields, const B& on = {}) {
-    for (std::size_t k = 0; k < fields.size(); ++k) {
-      if (fields[k].empty()) continue;
-      const ball& its = fields[k].shape.around;
-      if (k >= facts_.size() || its.center != facts_[k].center || its.radius != facts_[k].radius ||
-          fields[k].cells.size() != fields[k].shape.all_cubes())
-        throw std::invalid_argument("clearance: field " + std::to_string(k) + " is not that of part " +
-                                    std::to_string(k));
-    }
-    std::vector<field_view> views;
-    for (const auto& f : fields)
-      if (!f.empty()) views.push_back(f.view());
-    if (views.size() != parts_.size()) {
-      fields.clear();
-      views.clear();
-    }
-    fields_ = std::move(fields);
-    field_views_ = on.copy_in(std::span<const field_view>(views));
+  void set_fields(std::vector<field<B>> fields, const B& on = {}) { near_.set_fields(std::move(fields), facts_, on); }
+  /// Cells of each part, see with_cells; a part of which they are empty has none. Throws as set_fields.
+  void set_cells(std::vector<clearance::cells<B>> cells, const B& on = {}) {
+    near_.set_cells(std::move(cells), facts_, on);
   }
 
   /// A copy where `other` runs.
@@ -166,10 +158,8 @@ class model {
     std::vector<decltype(parts_[0].on(other))> copies;
     for (const Part& p : parts_) copies.push_back(p.on(other));
     model<decltype(parts_[0].on(other)), Other> copy(std::move(copies), other);
-    if (fields_.empty()) return copy;
-    std::vector<field<Other>> fields;
-    for (const auto& f : fields_) fields.push_back(f.on(other));
-    copy.set_fields(std::move(fields), other);
+    if (!fields().empty()) copy.set_fields(copies_of(fields(), other), other);
+    if (!cells().empty()) copy.set_cells(copies_of(cells(), other), other);
     return copy;
   }
   /// A copy on each of several backends.
@@ -182,12 +172,18 @@ class model {
   }
 
  private:
+  template <class Map, class Other>
+  static auto copies_of(const std::vector<Map>& maps, const Other& other) {
+    std::vector<decltype(maps[0].on(other))> copies;
+    for (const Map& its : maps) copies.push_back(its.on(other));
+    return copies;
+  }
+
   std::vector<Part> parts_;
   std::vector<part_facts> facts_;
   std::uint32_t depth_ = 0, width_ = 0;
   typename B::template buffer<view_type> views_;
-  std::vector<field<B>> fields_;
-  typename B::template buffer<field_view> field_views_ = {};
+  near_maps<B> near_;
 };
 
 }  // namespace clearance

@@ -65,7 +65,7 @@ class widened_model {
     const real* const tolerances = std::get<0>(memory_.put(tolerances_));
     PartView* const views = memory_.template space<PartView>(model_.size()).data();
     on_.for_each(model_.size(), widen_parts<PartView>{model_.parts, tolerances, views});
-    return {views, facts_, model_.depth, model_.width, model_.fields};
+    return {views, facts_, model_.depth, model_.width, model_.fields, model_.cells};
   }
 
  private:

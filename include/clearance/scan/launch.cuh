@@ -6,6 +6,7 @@
 #include <clearance/concepts/block_tally.cuh>
 #include <clearance/frames/clouds.hpp>
 #include <clearance/result.hpp>
+#include <clearance/robot/cells.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/scan/arguments.hpp>
 #include <clearance/scan/block.cuh>
@@ -61,6 +62,16 @@ __global__ void __launch_bounds__(most_parts)
   }
 }
 
+/// Puts a part's cells beside it.
+template <class PartView>
+struct join_cells {
+  const PartView* parts;
+  const cells_view* cells;
+  celled_view<PartView>* to;
+
+  CLEARANCE_HD void operator()(std::size_t k) const { to[k] = {parts[k], cells[k]}; }
+};
+
 template <class PartView>
 class launcher {
  public:
@@ -93,6 +104,11 @@ class launcher {
     check_cuda(
         cudaMemcpyAsync(views_.data(), model.parts, model.size() * sizeof(PartView), cudaMemcpyDefault, on.stream),
         "cudaMemcpyAsync");
+    if constexpr (cored_hierarchy<typename PartView::hierarchy_type>)
+      if (model.cells != nullptr) {
+        celled_ = device_buffer<celled_view<PartView>>(model.size(), on.id, memory);
+        on.for_each(model.size(), join_cells<PartView>{views_.data(), model.cells, celled_.data()});
+      }
     forget();
   }
 
@@ -102,6 +118,8 @@ class launcher {
   const field_view* fields(std::uint32_t group) const {
     return fields_ == nullptr ? nullptr : fields_ + group * most_parts;
   }
+  /// Have parts cells? Then a kernel's `part_type` may be a celled_view.
+  bool has_cells() const { return celled_.size() != 0; }
   /// The most blocks of a kernel.
   unsigned most_blocks() const { return 2 * processors_; }
 
@@ -117,8 +135,11 @@ class launcher {
                               const typename Tally::arguments& answer) const {
     scan_arguments<Tally> a{};
     const std::uint32_t before = group * most_parts;
+    if constexpr (clearance::has_cells<typename Tally::part_type>)
+      a.views = celled_.data() + before;
+    else
+      a.views = views_.data() + before;
     a.parts = std::min(parts_ - before, most_parts);
-    a.views = views_.data() + before;
     a.state = state_.data() + group;
     a.rest = placed_.data() + group;
     a.overflow = overflow_.data();
@@ -221,6 +242,7 @@ class launcher {
   unsigned processors_, most_shared_, shared_of_processor_;
   device_buffer<scan_state> state_;
   device_buffer<PartView> views_;
+  device_buffer<celled_view<PartView>> celled_;  ///< The same with their cells, or nothing.
   device_buffer<placed_parts> placed_;
   device_buffer<std::byte> overflow_;  ///< Stacks of trees that shared memory is too small for.
   std::uint32_t overflow_room_ = 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot with fields answers as it does without them, in every bit."""
+"""A robot with fields or cells answers as it does without them, in every bit."""
 
 import copy
 import pickle
@@ -79,3 +79,36 @@ def test_why_there_is_no_field_is_a_note_and_what_is_wrong_is_refused(rng):
     refused(lambda: robot.with_fields(device="gpu"), "device")
     with pytest.raises(AttributeError):
         robot.has_fields = True
+
+
+CELLS = {"bytes": 2_000_000, "reach": 0.5}
+
+
+def every_distance(robot, points, **where):
+    return [tuple(getattr(r, what).tobytes() for what in ("distance", "part", "primitive"))
+            for d_max in (0.2, np.inf)
+            for r in [clearance.Query(robot, clearance.Distances(d_max=d_max, which=True))(points, **where)]]
+
+
+def test_every_distance_has_the_same_bits_with_cells_and_with_both_maps(arm, rng):
+    spheres, poses, _ = random_robot(rng)
+    points = rng.normal(0, 0.8, (3000, 3)).astype("f4")
+    for robot, where in (spheres, {"poses": poses}), (arm, {"joints": [0.3, -0.4, 0.1]}):
+        celled = robot.with_cells(**CELLS)
+        assert celled.has_cells and not celled.has_fields and not robot.has_cells and celled.notes == robot.notes
+        for both in celled.with_fields(SMALL), robot.with_fields(SMALL).with_cells(**CELLS), pickle.loads(pickle.dumps(celled)):
+            assert both.has_cells
+            assert every_distance(both, points, **where) == every_distance(robot, points, **where)
+
+
+def test_why_there_are_no_cells_is_a_note_and_what_is_wrong_is_refused():
+    robot = clearance.Robot.from_spheres({"huge": [[0, 0, 0, 2e6]], "small": [[0, 0, 0, 0.1]]})
+    some = robot.with_cells(**CELLS)
+    assert some.has_cells  # each part has its own
+    assert some.notes == ['part "huge": a part without a finite size has no cells; so it has none']
+    none = robot.with_cells(bytes=16)
+    assert not none.has_cells and none.notes[1].startswith('part "small": 16 bytes are too few for cells of its 1 primitives')
+    for wrong in -1, 0.5, "much", None:
+        refused(lambda: robot.with_cells(bytes=wrong), "bytes is a whole number, 0 or more")
+    refused(lambda: robot.with_cells(reach=-1), "cells reach -1.000000 m")
+    refused(lambda: robot.with_cells(device="gpu"), "device")

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Gives the parts of a robot fields: what is known of the distance to them, from one look into a table.
+// Samples the field of a part: what is known of the distance to it, from one look into a table.
 
 #include <clearance/backends/host.hpp>
-#include <clearance/equipped.hpp>
 #include <clearance/minimum/resolve.hpp>
 #include <clearance/robot/field.hpp>
 #include <clearance/robot/model.hpp>
@@ -108,16 +107,6 @@ struct field_sample {
   }
 };
 
-}  // namespace clearance::minimum
-
-namespace clearance {
-
-struct field_options {
-  std::size_t bytes = std::size_t(1) << 20;  ///< Memory for each part, about.
-};
-
-namespace detail {
-
 /// The grids of a field with about `cubes` cubes each; none if the part has no finite size.
 inline field_view field_around(const extent& box, const ball& around, std::size_t cubes) {
   field_view v;
@@ -203,8 +192,7 @@ std::vector<field_cell> sampled_cells(const B& on, const Part& part, const field
   on.stage(std::span<const std::uint32_t>(&nothing, 1), lost.data());
   const any_depth walk{need};
   for (const auto& g : shape.grids)
-    on.for_each(g.cubes(),
-                minimum::field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});
+    on.for_each(g.cubes(), field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});
   if (on.copy_out(lost.data(), 1)[0] != 0)
     return why_not = "its distances are not finite, so it has no field", std::vector<field_cell>{};
   return on.copy_out(cells.data(), all);
@@ -218,35 +206,10 @@ field<host> sampled_field(const B& on, const Part& part, const field_options& op
   try {
     made->cells = sampled_cells(on, part, made->shape, why_not);
   } catch (const std::exception& error) {
-    if (!out_of_memory(on, error)) throw;
+    if (!detail::out_of_memory(on, error)) throw;
     why_not = "there is not enough memory to sample its field";
   }
   return std::move(*made);
 }
 
-/// A robot of which part k has the field `make(part, why_not)`. An empty one has its sentence in `why_not`.
-template <class Part, class Make>
-equipped<model<Part>> fielded_by(model<Part> robot, Make make) {
-  using view = typename model<Part>::view_type;
-  static_assert(tangent_primitive<typename view::hierarchy_type::primitive_type>,
-                "a field needs primitives with `tangent_at`, see concepts/tangent.hpp");
-  std::vector<std::string> without(robot.size());
-  std::vector<field<host>> fields;
-  for (std::size_t k = 0; k < robot.size(); ++k) fields.push_back(make(robot.parts()[k], without[k]));
-  robot.set_fields(std::move(fields));
-  return {std::move(robot), std::move(without)};
-}
-
-}  // namespace detail
-
-/// Gives each part of a robot in host memory a field of about `bytes`, sampled where `on` runs. Questions about many
-/// configurations then need one look where they walked a tree; no answer changes. `model.on(device)` copies fields,
-/// too. A part that can have none keeps its tree alone. Source: Lipschitz and tangent bounds, fields.hpp.
-template <backend B, class Part>
-equipped<model<Part>> with_fields(const B& on, model<Part> robot, const field_options& options = {}) {
-  return detail::fielded_by(std::move(robot), [&](const Part& part, std::string& why_not) {
-    return detail::sampled_field(on, part, options, why_not);
-  });
-}
-
-}  // namespace clearance
+}  // namespace clearance::minimum
