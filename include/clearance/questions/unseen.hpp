@@ -208,13 +208,6 @@ inline constexpr bool is_masked = false;
 template <class S>
 inline constexpr bool is_masked<masked<S>> = true;
 
-template <class T>
-concept some_variant = requires { typename std::variant_size<T>::type; };
-/// Is it known only when they are asked about which of these clouds are images?
-template <class T>
-concept clouds_of_variants =
-    some_variant<T> || requires(const T t) { requires some_variant<std::remove_cvref_t<decltype(*std::begin(t))>>; };
-
 /// Hidden room with what is uncertain about its image.
 template <class S>
 hidden<S> as_uncertain(const auto&, const hidden<S>& room) {
@@ -272,7 +265,7 @@ class unseen::engine {
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(number));
         ask_camera(poses, given, image.source, pose, image.labels, q, number++, places, r);
       } else {
-        refuse<Clouds, S>(number);
+        refuse(number);
       }
     });
     minimum::join(std::span<const camera>(cameras_).first(used_), q.room.farthest, q.radii, q.edges, model_.size(), r);
@@ -291,10 +284,8 @@ class unseen::engine {
 
   part_facts facts_of(std::size_t k, const unseen& q) const { return widened(model_.facts[k], radius_of(q.radii, k)); }
 
-  template <class Clouds, class S>
+  /// One of a variant's kinds; others do not compile.
   [[noreturn]] static void refuse(std::uint32_t number) {
-    static_assert(detail::clouds_of_variants<Clouds>,
-                  "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
     throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " + std::to_string(number) +
                                 " is none");
   }
