@@ -129,6 +129,14 @@ struct scene_before_a_robot {
 
   static constexpr std::uint32_t width = 31, height = 17;
 
+  /// The robot's poses in so many configurations, one after another.
+  std::vector<Eigen::Isometry3d> configurations(std::size_t count) const {
+    std::vector<Eigen::Isometry3d> all;
+    for (std::size_t c = 0; c < count; ++c)
+      for (const Eigen::Isometry3d& pose : s.poses) all.push_back(shifted(0.2 * double(c), -0.1 * double(c), 0) * pose);
+    return all;
+  }
+
   /// `there`: or a camera without a pixel.
   image seen(bool there) const { return {pixels.data(), there ? width : 0, there ? height : 0, {25, 25, 15, 8}}; }
   points spots(bool there) const { return {at.data(), there ? at.size() : 0}; }
