@@ -7,7 +7,9 @@
 #include <clearance/questions/min_distance_supported.hpp>
 #include <clearance/questions/self_filter.hpp>
 
-namespace combinations {
+namespace each_point_test {
+
+using namespace combinations;
 
 TEST_CASE("distances: each cell is asked, and says what is composed by hand") {
   check_cells("distances", clearance::distances{.d_max = 0.6, .which = true});
@@ -22,4 +24,4 @@ TEST_CASE("min_distance_supported: each cell is asked, and says what is composed
   check_cells("min_distance_supported", clearance::min_distance_supported{.min_points = 2, .radius = 0.1});
 }
 
-}  // namespace combinations
+}  // namespace each_point_test

@@ -3,7 +3,9 @@
 #include "combinations/cells.hpp"
 #include "support/catch.hpp"
 
-namespace combinations {
+namespace images_test {
+
+using namespace combinations;
 
 namespace {
 
@@ -109,4 +111,4 @@ TEST_CASE("a cloud that may be of any kind is asked about what it hides, if it i
                     "clearance: unseen is asked about depth images, and cloud 0 is none");
 }
 
-}  // namespace combinations
+}  // namespace images_test

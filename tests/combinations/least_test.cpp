@@ -5,7 +5,9 @@
 #include <clearance/questions/certain_distance.hpp>
 #include <clearance/questions/min_distance.hpp>
 
-namespace combinations {
+namespace least_test {
+
+using namespace combinations;
 
 TEST_CASE("min_distance: each cell is asked, and says what is composed by hand") {
   check_cells("min_distance", clearance::min_distance{});
@@ -17,4 +19,4 @@ TEST_CASE("certain_distance: each cell is asked, and says what is composed by ha
   check_cells("certain_distance", clearance::certain_distance{{{0.01, 0.02}, {0, 0.01}, {0.02, 0}}});
 }
 
-}  // namespace combinations
+}  // namespace least_test

@@ -5,7 +5,9 @@
 #include <clearance/questions/nearest_k.hpp>
 #include <clearance/questions/within.hpp>
 
-namespace combinations {
+namespace listed_test {
+
+using namespace combinations;
 
 TEST_CASE("within: each cell is asked, and says what is composed by hand") {
   check_cells("within", clearance::within{{0.1}});
@@ -14,4 +16,4 @@ TEST_CASE("nearest_k: each cell is asked, and says what is composed by hand") {
   check_cells("nearest_k", clearance::nearest_k{.k = 7});
 }
 
-}  // namespace combinations
+}  // namespace listed_test

@@ -3,7 +3,9 @@
 #include "combinations/cells.hpp"
 #include "support/catch.hpp"
 
-namespace combinations {
+namespace many_test {
+
+using namespace combinations;
 
 namespace {
 
@@ -69,4 +71,4 @@ TEST_CASE("in_collisions: each cell is asked, and says what is composed by hand"
       });
 }
 
-}  // namespace combinations
+}  // namespace many_test

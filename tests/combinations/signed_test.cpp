@@ -8,7 +8,9 @@
 #include <clearance/solid/mesh_solid.hpp>
 #include <clearance/volume/aabb.hpp>
 
-namespace combinations {
+namespace signed_test {
+
+using namespace combinations;
 
 TEST_CASE("signed_distances: each cell is asked, and says what is composed by hand") {
   const scene_before_a_robot before;
@@ -19,4 +21,4 @@ TEST_CASE("signed_distances: each cell is asked, and says what is composed by ha
       .check();
 }
 
-}  // namespace combinations
+}  // namespace signed_test

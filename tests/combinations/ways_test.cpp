@@ -5,7 +5,9 @@
 
 #include <clearance/motion_clearance.hpp>
 
-namespace combinations {
+namespace ways_test {
+
+using namespace combinations;
 
 namespace {
 
@@ -65,4 +67,4 @@ TEST_CASE("a way between two: each kind of source is asked, and says what is com
   v.require(several.lower <= least + real(some.tolerance), "several clouds are farther than one of them");
 }
 
-}  // namespace combinations
+}  // namespace ways_test

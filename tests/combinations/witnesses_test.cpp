@@ -3,7 +3,9 @@
 #include "combinations/cells.hpp"
 #include "support/catch.hpp"
 
-namespace combinations {
+namespace witnesses_test {
+
+using namespace combinations;
 
 namespace {
 
@@ -83,4 +85,4 @@ TEST_CASE("collect: each cell is asked, and says what is composed by hand") {
   check(before.all(kinds_asked(), [](std::size_t) { return true; }, 0.02f), "several");
 }
 
-}  // namespace combinations
+}  // namespace witnesses_test
