@@ -95,15 +95,20 @@ template <class Kinds>
 using clouds_of = decltype(detail::clouds_of(Kinds()));
 
 namespace detail {
-template <class... S>
-auto without_uncertain_images(kinds<S...>) {
-  return joined(kinds<>(), std::conditional_t<std::is_same_v<S, uncertain_image>, kinds<>, kinds<S>>()...);
+template <class... S, class Others>
+auto common_of(kinds<S...>, Others) {
+  return joined(kinds<>(), std::conditional_t<is_among<S>(Others()), kinds<S>, kinds<>>()...);
 }
 }  // namespace detail
+/// The kinds that are in both lists.
+template <class Some, class Others>
+using common = decltype(detail::common_of(Some(), Others()));
+
 /// The kinds that are asked in the test. An uncertain image is like balls, but for a question about images.
 template <class Q, form F = form::once>
-using asked_here = std::conditional_t<clearance::lists<Q, clearance::of_images>, taken<Q, F>,
-                                      decltype(detail::without_uncertain_images(taken<Q, F>()))>;
+using asked_here =
+    std::conditional_t<clearance::lists<Q, clearance::of_images>, taken<Q, F>,
+                       common<kinds<points, image, listed_samples, balls, room, uncertain_room>, taken<Q, F>>>;
 
 /// What all of them show.
 struct scene_before_a_robot {
