@@ -95,7 +95,7 @@ struct chunk_engine_of {
   using type = chunk_engine<Q, On, PartView>;
 };
 template <class Q, class On, class PartView>
-  requires(!is_plain<On> && chunking_question<Q>)
+  requires(!is_plain<On> && !is_several<On> && chunking_question<Q>)
 struct chunk_engine_of<Q, On, PartView> {
   /// With the robot where it is asked.
   struct type : one_robot<On, PartView>, Q::template chunks<On, PartView> {
@@ -114,21 +114,31 @@ class chunked_query {
  public:
   /// Throws std::invalid_argument as `query`.
   template <class Robot>
-  chunked_query(const On& on, const Robot& robot, const Q& asked) : engine_(on, robot, asked), asked_(asked) {}
+  chunked_query(const On& on, const Robot& robot, const Q& asked) : engine_(on, robot, asked), asked_(asked) {
+    [[maybe_unused]] constexpr bool asked_so =
+        decltype(refusal_of_form<Q, form::in_chunks, On>())::template explain<Q, On>();
+  }
   template <owning_robot Robot>
   chunked_query(const On&, const Robot&&, const Q&) = delete;  // the robot would be gone when it is asked; name it
 
   /// As `query`; `pose` is world-from-cloud. Throws what `load` throws; afterwards you can ask the same object again.
   template <class Poses, loaded_cloud C>
   typename Q::result operator()(const Poses& poses, chunked<C>& cloud, const Eigen::Isometry3d& pose, const Q& q) {
-    static_assert(detail::explain_readable<On, C>());
-    const detail::in_use::call only(used_);
-    return engine_.run(detail::as_poses(poses), cloud, pose, q);
+    if constexpr (explain_combination<Q, loaded_source<C>, form::in_chunks, On>()) {
+      const detail::in_use::call only(used_);
+      return engine_.run(detail::as_poses(poses), cloud, pose, q);
+    }
   }
   template <class Poses, loaded_cloud C>
   typename Q::result operator()(const Poses& poses, chunked<C>& cloud,
                                 const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity()) {
     return (*this)(poses, cloud, pose, asked_);
+  }
+
+  /// Other clouds are refused with a sentence.
+  template <class Poses, clouds_of_any_kind Clouds, class... Others>
+  void operator()(const Poses&, const Clouds&, const Others&...) {
+    refusals::clouds_in_chunks::explain<Clouds>();
   }
 
   /// How many points the last answer loaded.

@@ -3,6 +3,7 @@
 // The valid points of a cloud, and nothing else. Runs on the host; include compacted.cuh for a device.
 
 #include <clearance/frames/readable.hpp>
+#include <clearance/query/combination.hpp>
 
 #include <stdexcept>
 #include <string>
@@ -58,7 +59,7 @@ void compacted_async(const On& on, const S& source, vec3* points, std::uint32_t*
   if (source.size() >= std::size_t(1) << 31)
     throw std::invalid_argument("clearance: " + std::to_string(source.size()) +
                                 " points are too many for one call; it takes 2^31 - 1");
-  static_assert(detail::explain_readable<On, S>());
+  if constexpr (std::derived_from<On, host> && detail::some_on_device<S>) refusals::device_memory::explain<S>();
   rounding_of(source);  // refuses what cannot be read
   detail::compacts_on<On>::enqueue(on, source, points, numbers, count);
 }

@@ -53,17 +53,10 @@ inline std::size_t spread_piece(std::size_t i, std::size_t n) {
   return k;
 }
 
-}  // namespace detail
-
-/// As `ask_by`, as long as `go_on()` is true. It is asked before each piece: a clock of your own, or an order to stop.
-/// `ask` is a prepared `query`; it forgets the last frame.
+/// Asks about pieces of the clouds, one after another, while `go_on()` says so.
 template <class Q, class On, class PartView, class Poses, class Clouds, class GoOn>
-so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& poses, const Clouds& clouds, GoOn go_on,
-                                     const Q& q, const deadline_options& options = {}) {
-  static_assert(explain_given<Clouds>());
-  static_assert(partial_question<Q>,
-                "while points are unseen this question has no answer: it needs so_far(result&, std::uint64_t unseen)");
-  static_assert(!requires { typename On::several; }, "a deadline is for a host or a device, not for several");
+so_far<typename Q::result> ask_pieces(query<Q, On, PartView>& ask, const Poses& poses, const Clouds& clouds,
+                                      GoOn& go_on, const Q& q, const deadline_options& options) {
   detail::piece_numbers numbers;
   numbers.count(clouds);
   constexpr std::size_t usual = requires { typename On::own_scan; } ? 1 << 22 : 1 << 18;
@@ -92,6 +85,18 @@ so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& p
   so_far<typename Q::result> known{all.result(), numbers.total() - seen};
   Q::so_far(known.result, known.unseen);
   return known;
+}
+
+}  // namespace detail
+
+/// As `ask_by`, as long as `go_on()` is true. It is asked before each piece: a clock of your own, or an order to stop.
+/// `ask` is a prepared `query`; it forgets the last frame.
+template <class Q, class On, class PartView, class Poses, class Clouds, class GoOn>
+so_far<typename Q::result> ask_while(query<Q, On, PartView>& ask, const Poses& poses, const Clouds& clouds, GoOn go_on,
+                                     const Q& q, const deadline_options& options = {}) {
+  if constexpr (explain_given<Clouds>())
+    if constexpr (explain_combination<Q, Clouds, form::by_deadline, On>())
+      return detail::ask_pieces(ask, poses, clouds, go_on, q, options);
 }
 
 /// As the next function, with a prepared `query`, which saves preparation on a device.

@@ -17,6 +17,7 @@ struct seen_and_unseen_result : unseen_result {
 /// Images that are `uncertain` have no such minimum: certain_distance is asked about them.
 struct seen_and_unseen : unseen {
   using result = seen_and_unseen_result;
+  using can = clearance::can<checking, of_images, of_points>;
   template <class On, class PartView>
   class engine;
 };

@@ -116,22 +116,4 @@ void check_near_maps_change_nothing(verdict& v, const Once& once) {
   v.require(asked == 6 * 18, asked, " questions");
 }
 
-/// The table of docs/choosing.md.
-inline std::string table_of_forms() {
-  std::string table =
-      "| question | once, prepared | enqueued | several GPUs, chunks, ranks | deadline |\n| --- | --- | --- | --- | "
-      "--- |\n";
-  const auto row = [&]<class Q>(const char* name, const Q&) {
-    using forms = forms_of<Q>;
-    static_assert(clearance::has_list<Q>, "a question of the library lists what it can: a misspelt member is missed");
-    const auto word = [](bool has) { return has ? "yes" : "no"; };
-    table += std::string("| `") + name + "` | yes | " + word(forms::enqueued) + " | " + word(forms::in_pieces) + " | " +
-             word(forms::by_deadline) + " |\n";
-  };
-  for_each_question(row), for_each_question_of_meshes(row);
-  row("part_witnesses", clearance::part_witnesses{});
-  row("unseen", clearance::unseen{});
-  return table;
-}
-
 }  // namespace testing

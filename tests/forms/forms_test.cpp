@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every question has every form that its declarations allow, with the bits of one call; and the page says which.
+// Every question has every form that its declarations allow, with the bits of one call.
 #include "forms/forms.hpp"
 #include "support/catch.hpp"
-#include "support/places.hpp"
 
 #include <array>
 #include <atomic>
-#include <fstream>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -107,14 +104,6 @@ TEST_CASE("Threads that share a robot, each with a prepared question of its own,
     for (std::thread& each : threads) each.join();
     for (const auto& each : same) v.require(each, name, ", frame ", f.number);
   });
-}
-
-TEST_CASE("docs/choosing.md has the table of forms that the questions declare") {
-  std::ifstream file(testing::checkout("docs/choosing.md"));
-  std::stringstream page;
-  page << file.rdbuf();
-  INFO("the table is:\n" << table_of_forms());
-  CHECK(page.str().find(table_of_forms()) != std::string::npos);
 }
 
 }  // namespace forms_test

@@ -28,13 +28,14 @@ concept ball_source = vague_source<S> && S::balls;
 template <class S>
 concept sight_source = capsule_source<S> && S::sight;
 
+#define CLEARANCE_STANDS_FOR_MORE                                                                            \
+  "the points of this source stand for more (what they hide, where they may be): questions about pairs and " \
+  "the least distance take such sources, many configurations only balls; this does not"
+
 /// For whatever looks at points alone.
 template <point_source S>
 consteval bool points_alone() {
-  static_assert(
-      !capsule_source<S>,
-      "the points of this source stand for more (what they hide, where they may be): questions about pairs and "
-      "the least distance take such sources, many configurations only balls; this does not");
+  static_assert(!capsule_source<S>, CLEARANCE_STANDS_FOR_MORE);
   return true;
 }
 /// For whatever takes points and balls.

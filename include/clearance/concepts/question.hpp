@@ -114,13 +114,26 @@ CLEARANCE_ABILITY(chunking, chunks, chunking_question,
 CLEARANCE_ABILITY(choosing, about, question,
                   "a choosing question needs: template <class PartView> static constexpr bool about");
 
-/// In a list: the question is about depth images alone, because no other source says what it hides.
-struct of_images {
+/// What a list says about clouds has no member. Without it a question takes every source.
+struct says_of_clouds {
   template <class Q>
   static consteval bool explain() {
     return true;
   }
 };
+/// In a list: the question is about depth images alone, because no other source says what it hides.
+struct of_images : says_of_clouds {};
+/// In a list: it is about points, not about what they hide or where they may be.
+struct of_points : says_of_clouds {};
+/// In a list: it is about points, and balls around them.
+struct of_balls : says_of_clouds {};
+
+/// A question about many configurations (plan/engine.hpp): poses are those of one after another. `searched` is what is
+/// kept of each.
+template <class Q>
+concept planning_question = question<Q> && requires { typename Q::searched::result_type; };
+CLEARANCE_ABILITY(planning, searched, planning_question,
+                  "a planning question needs: a type searched, such as plan::least_question");
 
 // A question about pairs (pairwise/engine.hpp). Its members know the engine's types, so they are asked for by name.
 
@@ -170,8 +183,9 @@ consteval bool explain_question() {
   if constexpr (question<Q>) {
     static_assert(std::is_class_v<Q> && !std::is_final_v<Q>,
                   "a question is a class that is not final: its members are asked for by their names");
-    constexpr bool can_all = explain_abilities<Q, merging, numbering, partial, checking, skipping, joining, chunking,
-                                               choosing, of_images, concluding, retrying, counting>();
+    constexpr bool can_all =
+        explain_abilities<Q, merging, numbering, partial, checking, skipping, joining, chunking, choosing, of_images,
+                          of_points, of_balls, planning, concluding, retrying, counting>();
     if constexpr (detail::own_engine::is_there<Q>()) {
       return can_all && detail::own_engine::needs<requires { typename detail::takes_two<Q::template engine>; }>();
     } else {

@@ -9,20 +9,6 @@
 
 #include <map>
 
-namespace clearance::detail {
-
-/// Can `On` read these clouds? With a reason if not.
-template <class On, class Clouds>
-consteval bool explain_readable() {
-  constexpr bool fits = !std::derived_from<On, host> || !some_on_device<Clouds>;
-  static_assert(fits,
-                "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
-                "them into a thrust::host_vector");
-  return fits;
-}
-
-}  // namespace clearance::detail
-
 namespace clearance::frames {
 
 /// Takes every source as it is.

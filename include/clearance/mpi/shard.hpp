@@ -58,7 +58,7 @@ class query<Q, mpi::shard<On>, PartView>
   typename Q::result finish() { return *std::move(result_); }
   template <class... Arguments>
   void enqueue(const Arguments&...) {
-    static_assert(sizeof...(Arguments) > 1000, "ranks have no one stream to enqueue in: their answer is waited for");
+    refusals::ranks_have_no_stream::explain<Q, Arguments...>();
   }
 
   /// Forgets the last frame. The next one starts cold; its answer is the same.

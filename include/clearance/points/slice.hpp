@@ -10,9 +10,11 @@ namespace clearance {
 
 /// Points `begin` to `begin + count - 1` of any source, as fast as the source itself if `begin` is a multiple of four.
 template <point_source S>
-struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, sources::surveyed> {
-  static_assert(points_alone<S>());
-  using can = can_all<typename sliced::passed, can_as<S, sources::copied>>;
+struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, sources::surveyed, sources::capsules,
+                          sources::surveyed_around> {
+  static_assert(points_or_balls<S>());
+  using can = can_all<typename sliced::passed, can_as<S, sources::copied, sources::shared>>;
+  static constexpr bool vague = ball_source<S>, balls = vague;
 
   S whole;
   std::size_t begin, count;
@@ -24,6 +26,12 @@ struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, s
   CLEARANCE_HD std::size_t size() const { return count; }
   CLEARANCE_HD std::size_t number_in_viewed(std::size_t i) const { return begin + i; }
   CLEARANCE_HD sample operator[](std::size_t i) const { return whole[begin + i]; }
+
+  CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const
+    requires shared_source<S>
+  {
+    return whole.shares(begin + i, p);
+  }
 
   CLEARANCE_HD bool fetches() const
     requires fetched_source<S>

@@ -163,6 +163,10 @@ struct as_measured {
     return s.source;
   }
   template <vague_source S>
+  auto operator()(const sliced<S>& s) const {
+    return sliced((*this)(s.whole), s.begin, s.count);
+  }
+  template <vague_source S>
   auto operator()(const sharded<S>& s) const {
     std::vector<decltype((*this)(s.piece(0)))> pieces;
     for (std::size_t k = 0; k < s.pieces(); ++k) pieces.push_back((*this)(s.piece(k)));

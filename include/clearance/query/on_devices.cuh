@@ -92,8 +92,7 @@ class query<Q, devices, PartView> : public detail::callable<query<Q, devices, Pa
 
   template <class... Arguments>
   void enqueue(const Arguments&...) {
-    static_assert(sizeof...(Arguments) > 1000,
-                  "several devices have no one stream to enqueue in: their answer is waited for");
+    refusals::devices_have_no_stream::explain<Q, Arguments...>();
   }
 
   /// Forgets the last frame. The next one starts cold; its answer is the same.

@@ -32,11 +32,7 @@ class joined_by_merge {
 
 template <class Q, class PartView>
 struct joined_for {
-  static_assert(
-      merging_question<Q>,
-      "this question cannot be asked about pieces of the clouds (several devices, chunks, ranks, a deadline): its "
-      "results "
-      "cannot be merged. A question of your own needs: static void merge(result& all, const result& other)");
+  static_assert(merging_question<Q>);  // the user's door says why not (query/combination.hpp)
   using type = joined_by_merge<Q>;
 };
 template <class Q, class PartView>

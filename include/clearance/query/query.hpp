@@ -5,6 +5,7 @@
 #include <clearance/backends/one_call.hpp>
 #include <clearance/backends/plain.hpp>
 #include <clearance/frames/readable.hpp>
+#include <clearance/query/combination.hpp>
 #include <clearance/query/engine.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/visitor/nearest.hpp>
@@ -140,10 +141,12 @@ class callable {
   /// copied. Throws std::invalid_argument if the number of poses is wrong, one is not rigid, or an option cannot be.
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds, const Q& q) & {
-    static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
-    const in_use::call only(used_);
-    self().begin(as_poses(poses), clouds, q);
-    return finished();
+    if constexpr (explain_given<Clouds>())
+      if constexpr (explain_combination<Q, Clouds, form::once, On>()) {
+        const in_use::call only(used_);
+        self().begin(as_poses(poses), clouds, q);
+        return finished();
+      }
   }
   template <class Poses, class Clouds>
   decltype(auto) operator()(const Poses& poses, const Clouds& clouds) & {
@@ -163,10 +166,13 @@ class callable {
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
   decltype(auto) operator()(const Chain& chain, std::span<const double> joints, const Clouds& clouds, const Q& q) & {
-    static_assert(explain_given<Clouds>() && explain_readable<On, Clouds>());
-    const in_use::call only(used_);
-    self().begin_chain(chain, joints, clouds, q);
-    return finished();
+    using many = std::conditional_t<planning_question<Q>, refusals::none, refusals::not_many>;
+    if constexpr (many::template explain<Q>() && explain_given<Clouds>())
+      if constexpr (explain_combination<Q, Clouds, form::once, On>()) {
+        const in_use::call only(used_);
+        self().begin_chain(chain, joints, clouds, q);
+        return finished();
+      }
   }
   template <class Chain, class Clouds>
     requires requires(const Chain& chain) { chain.parts(); }
@@ -186,10 +192,12 @@ class callable {
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds, const Q& q) & {
     constexpr bool places = requires(Query& its) { its.begin_placed(clouds, q); };
-    static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
-    const in_use::call only(used_);
-    if constexpr (places) self().begin_placed(clouds, q);
-    return finished();
+    if constexpr (std::conditional_t<places, refusals::none, refusals::not_placed>::template explain<Q>())
+      if constexpr (explain_combination<Q, Clouds, form::once, On>()) {
+        const in_use::call only(used_);
+        self().begin_placed(clouds, q);
+        return finished();
+      }
   }
   template <class Clouds>
   decltype(auto) operator()(const Clouds& clouds) & {
@@ -233,6 +241,14 @@ template <writing_question Q>
 struct out_of<Q> {
   using type = typename Q::out;
 };
+
+/// Refuses to enqueue what says nowhere to write.
+template <class Q, class On>
+consteval bool explain_unwritten() {
+  using form_alone = decltype(refusal_of_form<Q, form::enqueued, On>());
+  using why = std::conditional_t<form_alone::sentence == nullptr, refusals::placed_first, form_alone>;
+  return why::template explain<Q, On>();
+}
 
 /// Does an engine read poses where a device has them, and does it place configurations there?
 template <class Engine, class S, class Out>
@@ -301,9 +317,11 @@ class query : detail::one_robot<On, PartView>,
   /// stay until it is done. On a device, a graph that captures this keeps the current poses and options.
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const Q& q, const out& to) {
-    static_assert(explain_given<Clouds>() && detail::explain_readable<On, Clouds>());
-    const detail::in_use::call only(callable::used());
-    return engine::start(detail::as_poses(poses), clouds, q, to);
+    if constexpr (explain_given<Clouds>())
+      if constexpr (explain_combination<Q, Clouds, form::enqueued, On>()) {
+        const detail::in_use::call only(callable::used());
+        return engine::start(detail::as_poses(poses), clouds, q, to);
+      }
   }
   template <class Poses, class Clouds>
   auto enqueue(const Poses& poses, const Clouds& clouds, const out& to) {
@@ -328,13 +346,22 @@ class query : detail::one_robot<On, PartView>,
   template <class Clouds>
   auto enqueue(const Clouds& clouds, const Q& q) {
     constexpr bool places = detail::places<engine, Clouds, Q>;
-    static_assert(places, "configurations are placed, and asked about without poses, on a device{}, not by plain");
-    const detail::in_use::call only(callable::used());
-    if constexpr (places) return engine::start_placed(clouds, q);
+    if constexpr (std::conditional_t<places, refusals::none, refusals::not_placed>::template explain<Q>())
+      if constexpr (explain_combination<Q, Clouds, form::enqueued, On>()) {
+        const detail::in_use::call only(callable::used());
+        return engine::start_placed(clouds, q);
+      }
   }
   template <class Clouds>
   auto enqueue(const Clouds& clouds) {
     return enqueue(clouds, callable::asked());
+  }
+  /// A question that has no `out` is refused with a sentence.
+  template <class Poses, class Clouds, class... Others>
+  void enqueue(const Poses&, const Clouds&, const Others&...)
+    requires(!writing_question<Q> && sizeof...(Others) > 0)
+  {
+    detail::explain_unwritten<Q, On>();
   }
 
   std::span<const part_facts> facts() const { return robot_type::view().facts; }
@@ -362,6 +389,12 @@ auto enqueue(const On& on, const Robot& robot, const Poses& poses, const Clouds&
       query once(on, robot, q, memory...);
       return once.enqueue(poses, clouds, to);
     });
+}
+/// A question that has no `out` is refused with a sentence.
+template <class On, class Robot, class Poses, class Clouds, class Q, class To>
+  requires(question<Q> && !writing_question<Q>)
+void enqueue(const On&, const Robot&, const Poses&, const Clouds&, const Q&, const To&) {
+  detail::explain_unwritten<Q, On>();
 }
 
 }  // namespace clearance

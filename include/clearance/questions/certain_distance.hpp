@@ -181,7 +181,7 @@ struct certain_distance {
   std::vector<part_radius> parts = {};
 
   using result = certain_distance_result;
-  using can = clearance::can<checking, joining, partial>;
+  using can = clearance::can<checking, joining, partial, of_balls>;
   template <class On, class PartView>
   class engine;
   template <class PartView>

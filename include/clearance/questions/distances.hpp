@@ -29,7 +29,7 @@ struct distances {
   bool which = false;       ///< Also which part and primitive is nearest.
 
   using result = point_distances;
-  using can = clearance::can<checking, joining>;
+  using can = clearance::can<checking, joining, of_points>;
   /// One entry per point of all clouds, in memory that the backend writes.
   struct out {
     distances_out distances;

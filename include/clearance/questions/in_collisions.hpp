@@ -49,7 +49,7 @@ struct in_collisions {
   std::vector<double> radii = {};       ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = in_collisions_result;
-  using can = clearance::can<checking, merging, partial>;
+  using can = clearance::can<checking, merging, partial, planning, of_balls>;
   using searched = plan::margin_question;
   static constexpr bool each_part = false;
   template <class On, class PartView>

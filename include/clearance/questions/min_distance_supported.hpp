@@ -177,7 +177,7 @@ struct min_distance_supported {
   std::size_t most = 4096;       ///< The search ends after this many of the nearest points, each asked once.
 
   using result = supported_distance;
-  using can = clearance::can<checking>;
+  using can = clearance::can<checking, of_points>;
   template <class On, class PartView>
   class engine;
 

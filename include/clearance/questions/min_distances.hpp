@@ -98,7 +98,7 @@ struct min_distances {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = min_distances_result;
-  using can = clearance::can<checking, joining, partial>;
+  using can = clearance::can<checking, joining, partial, planning, of_balls>;
   using searched = plan::least_question;
   static constexpr bool each_part = false;  ///< One result per configuration.
   template <class On, class PartView>

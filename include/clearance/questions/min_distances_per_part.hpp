@@ -33,7 +33,7 @@ struct min_distances_per_part {
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = min_distances_per_part_result;
-  using can = clearance::can<checking, joining, partial>;
+  using can = clearance::can<checking, joining, partial, planning, of_balls>;
   using searched = plan::least_question;
   static constexpr bool each_part = true;
   template <class On, class PartView>

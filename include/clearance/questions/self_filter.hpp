@@ -180,7 +180,7 @@ struct self_filter {
   std::vector<double> padding = {0.01};
 
   using result = self_filter_result;
-  using can = clearance::can<checking, counting, concluding, joining>;
+  using can = clearance::can<checking, counting, concluding, joining, of_points>;
   /// One label per point of all clouds, in memory that the backend writes. The next work in a stream may ask about
   /// `masked_clouds(clouds, labels)`.
   struct out {

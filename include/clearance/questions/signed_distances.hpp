@@ -45,7 +45,7 @@ struct signed_distances {
   bool which = false;       ///< Also which part and triangle is nearest.
 
   using result = point_distances;
-  using can = clearance::can<choosing, checking, joining>;
+  using can = clearance::can<choosing, checking, joining, of_points>;
   using out = distances::out;
   template <class On, class PartView>
   using engine = pointwise::engine<On, PartView, signed_distances>;

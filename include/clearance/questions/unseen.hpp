@@ -222,13 +222,6 @@ inline constexpr bool is_masked = false;
 template <class S>
 inline constexpr bool is_masked<masked<S>> = true;
 
-template <class T>
-concept some_variant = requires { typename std::variant_size<T>::type; };
-/// Is it known only when they are asked about which of these clouds are images?
-template <class T>
-concept clouds_of_variants =
-    some_variant<T> || requires(const T t) { requires some_variant<std::remove_cvref_t<decltype(*std::begin(t))>>; };
-
 /// Hidden room with what is uncertain about its image.
 template <class S>
 hidden<S> as_uncertain(const auto&, const hidden<S>& room) {
@@ -293,7 +286,7 @@ class unseen::engine {
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(used_));
         begin_camera(poses, given, image.source, pose, image.labels, cameras);
       } else {
-        refuse<Clouds, S>(std::uint32_t(used_));
+        refuse(std::uint32_t(used_));
       }
     });
   }
@@ -330,10 +323,8 @@ class unseen::engine {
     });
     return any;
   }
-  template <class Clouds, class S>
+  /// One of a variant's kinds; others do not compile.
   [[noreturn]] static void refuse(std::uint32_t number) {
-    static_assert(detail::clouds_of_variants<Clouds>,
-                  "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
     throw std::invalid_argument("clearance: unseen is asked about depth images, and cloud " + std::to_string(number) +
                                 " is none");
   }
