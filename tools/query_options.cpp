@@ -181,7 +181,8 @@ void read_questions(const raw_options& raw, query_options& o) {
   o.distances = raw.distances;
   if (!o.distances.empty() && clearance::io::extension(o.distances) != ".ply")
     throw usage_error("--distances", o.distances + ": its name must end in .ply, which is what is written");
-  o.is_signed = raw.is_signed, o.cells = raw.cells;
+  o.is_signed = raw.is_signed;
+  o.cells = raw.cells;
   if (o.is_signed && o.model != model_kind::triangles)
     throw usage_error("--signed", "is for --model triangles: distances to spheres are signed already");
   if (!raw.nearest.empty()) o.nearest = whole_number("--nearest", raw.nearest, most_listed);

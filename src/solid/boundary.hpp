@@ -90,7 +90,11 @@ class nested_rims {
     std::size_t i = 0, j = 0;
     for (std::size_t a = 0; a < outer.size(); ++a)
       for (std::size_t b = 0; b < inner.size(); ++b)
-        if (const double d = (at(outer[a]) - at(inner[b])).squaredNorm(); d < least) least = d, i = a, j = b;
+        if (const double d = (at(outer[a]) - at(inner[b])).squaredNorm(); d < least) {
+          least = d;
+          i = a;
+          j = b;
+        }
     std::vector<std::uint32_t> one(outer.begin(), outer.begin() + std::ptrdiff_t(i) + 1);
     for (std::size_t k = 0; k <= inner.size(); ++k) one.push_back(inner[(j + k) % inner.size()]);
     one.insert(one.end(), outer.begin() + std::ptrdiff_t(i), outer.end());
@@ -115,7 +119,10 @@ class stray_caps {
     for (const cap& c : caps) {
       dipole& d = far_.emplace_back();
       d.area = vector_area(vertices, c.rim);
-      for (const std::uint32_t v : c.rim) d.middle += at(v) / double(c.rim.size()), d.box.extend(at(v));
+      for (const std::uint32_t v : c.rim) {
+        d.middle += at(v) / double(c.rim.size());
+        d.box.extend(at(v));
+      }
       for (const std::uint32_t v : c.rim) d.radius = std::max(d.radius, (at(v) - d.middle).norm());
       size_ = std::max(size_, d.radius);
     }

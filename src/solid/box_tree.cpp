@@ -95,7 +95,11 @@ std::uint32_t box_tree::cut(std::span<const Eigen::AlignedBox3d> boxes, const st
       grown.extend(box[b]);
       n += count[b];
       const double cost = n == 0 ? std::numeric_limits<double>::infinity() : left[b - 1] + n * area(grown);
-      if (cost < cheapest) cheapest = cost, best_axis = axis, best_bin = b;
+      if (cost < cheapest) {
+        cheapest = cost;
+        best_axis = axis;
+        best_bin = b;
+      }
     }
   }
   if (best_axis < 0) return halve(middles, first, last);

@@ -170,7 +170,8 @@ class mesh_closer {
       const auto& t = s.mesh.triangles[i];
       out_.duplicate += !s.counts[i] && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     }
-    out_.flipped += s.bodies.flipped, out_.one_sided_area += s.bodies.one_sided_area;
+    out_.flipped += s.bodies.flipped;
+    out_.one_sided_area += s.bodies.one_sided_area;
     if (options_.cap) out_.caps.loops += add_caps(s, patience_);
     out_.tolerance = std::max(out_.tolerance, s.moved);
     turn_out(s);
@@ -181,7 +182,10 @@ class mesh_closer {
   triangle_mesh part_of(std::uint32_t first, std::uint32_t last) const {
     std::uint32_t low = ~0u, high = 0;
     for (std::uint32_t i = first; i < last; ++i)
-      for (const std::uint32_t v : mesh_.triangles[i]) low = std::min(low, v), high = std::max(high, v);
+      for (const std::uint32_t v : mesh_.triangles[i]) {
+        low = std::min(low, v);
+        high = std::max(high, v);
+      }
     triangle_mesh part;
     part.vertices.assign(mesh_.vertices.begin() + low, mesh_.vertices.begin() + high + 1);
     part.triangles.assign(mesh_.triangles.begin() + first, mesh_.triangles.begin() + last);
@@ -202,7 +206,10 @@ class mesh_closer {
       if (!s.counts[i]) continue;
       const std::uint32_t b = s.bodies.body[i];
       areas[b] += area(s.mesh, t);
-      for (const std::uint32_t v : t) boxes[b].extend(s.mesh.vertices[v]), all.extend(s.mesh.vertices[v]);
+      for (const std::uint32_t v : t) {
+        boxes[b].extend(s.mesh.vertices[v]);
+        all.extend(s.mesh.vertices[v]);
+      }
       if (volumes[b] < 0) s.counts[i] = -1;
     }
     for (std::size_t b = 0; b < volumes.size(); ++b) {
@@ -260,7 +267,8 @@ class mesh_closer {
       const auto w = make_winding<double>(out_, &body);
       const std::vector<bool> cancels = cancelling_bodies(out_, w, body);
       for (std::size_t b = 0; b < cancels.size(); ++b) unclean_[b] = unclean_[b] || cancels[b];
-      mark(unclean_, unclean), mark(capped_, capped);
+      mark(unclean_, unclean);
+      mark(capped_, capped);
       for (std::uint32_t k = 0; k < shapes; ++k)
         if (capped[k] && !unclean[k] && flooded.contradicts(k, w)) unclean[k] = true;
     } else {
@@ -304,7 +312,11 @@ class mesh_closer {
     double most = 0, height = 0, size = 0;
     for (const auto& t : triangles) {
       const Eigen::Vector3d n = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
-      if (n.norm() > most) most = n.norm(), normal = n.normalized(), origin = v[t[0]];
+      if (n.norm() > most) {
+        most = n.norm();
+        normal = n.normalized();
+        origin = v[t[0]];
+      }
     }
     for (const auto& t : triangles)
       for (const std::uint32_t c : t) {

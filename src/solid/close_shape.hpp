@@ -71,7 +71,10 @@ body_report find_bodies(triangle_mesh& mesh, const Counts& counts, bool orient) 
     if (!two_sided || !orient) continue;
     const std::int8_t turn = area[1] > area[0] ? 1 : -1;
     for (const std::uint32_t i : piece)
-      if (side[i] == turn) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]), ++report.flipped;
+      if (side[i] == turn) {
+        std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+        ++report.flipped;
+      }
   }
   return report;
 }
@@ -113,7 +116,10 @@ inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& o
     if (best.rims.empty()) break;
     std::vector<std::uint32_t> open;
     for (const body_rim& rim : as_loaded.rims)
-      for (const boundary_edge& e : rim.edges) open.push_back(e.low), open.push_back(e.high);
+      for (const boundary_edge& e : rim.edges) {
+        open.push_back(e.low);
+        open.push_back(e.high);
+      }
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
     const double reach = part * box.diagonal().norm();
@@ -122,7 +128,10 @@ inline shape_surface weld_cracks(shape_surface as_loaded, const close_options& o
     if (moved == 0) continue;
     shape_surface welded = open_surface(std::move(mesh), options);
     // If edges merely shrink to nothing, no crack is closed.
-    if (welded.rim_length + 4 * reach * double(moved) < best.rim_length) best = std::move(welded), best.moved = reach;
+    if (welded.rim_length + 4 * reach * double(moved) < best.rim_length) {
+      best = std::move(welded);
+      best.moved = reach;
+    }
   }
   return best;
 }
@@ -160,7 +169,9 @@ inline std::uint32_t add_caps(shape_surface& s, std::size_t& patience) {
   for (const double volume : body_volumes(s)) turned.push_back(volume < 0);
   detail::stray_caps(s.mesh.vertices, caps, turned, patience).measure();
 
-  s.mesh.triangles.resize(loaded), s.bodies.body.resize(loaded), s.counts.resize(loaded);
+  s.mesh.triangles.resize(loaded);
+  s.bodies.body.resize(loaded);
+  s.counts.resize(loaded);
   s.open.assign(turned.size(), false);
   Eigen::AlignedBox3d box;
   for (const auto& v : s.mesh.vertices) box.extend(v);
@@ -171,7 +182,8 @@ inline std::uint32_t add_caps(shape_surface& s, std::size_t& patience) {
       s.open[c.body] = true;
     } else {
       s.moved = std::max(s.moved, c.off);
-      add(c), ++holes;
+      add(c);
+      ++holes;
     }
   return holes;
 }

@@ -127,7 +127,8 @@ class flood {
   void divide(const sheet& t, const cube_index& first, std::uint32_t side) {
     cube_index low, high;
     for (int k = 0; k < 3; ++k) {
-      low[k] = std::max(first[k], t.first[k]), high[k] = std::min(first[k] + side - 1, t.last[k]);
+      low[k] = std::max(first[k], t.first[k]);
+      high[k] = std::min(first[k] + side - 1, t.last[k]);
       if (low[k] > high[k]) return;
     }
     if (side <= 32 && settled(low, high)) return;
@@ -155,7 +156,10 @@ class flood {
     std::vector<bool> waits(std::size_t(ny) * nz, false);
     std::vector<std::uint32_t> rows, next;
     const auto wake = [&](std::uint32_t row) {
-      if (!waits[row]) waits[row] = true, next.push_back(row);
+      if (!waits[row]) {
+        waits[row] = true;
+        next.push_back(row);
+      }
     };
     for (std::uint32_t row = 0; row < ny * nz; ++row) {
       const std::uint32_t y = row % ny, z = row / ny;
@@ -205,7 +209,8 @@ class flood {
       std::uint32_t up = (here[w] | from) & open[w], down = up, may_up = open[w], may_down = open[w];
       for (int k = 1; k < 32; k *= 2) {
         up |= may_up & up << k, may_up &= may_up << k;
-        down |= may_down & down >> k, may_down &= may_down >> k;
+        down |= may_down & down >> k;
+        may_down &= may_down >> k;
       }
       more = more || (up | down) != here[w];
       here[w] = up | down;

@@ -45,7 +45,10 @@ std::vector<Eigen::Vector3d> mesh_solid::surface_points(std::size_t count) const
         std::size_t(std::upper_bound(until.begin(), until.end(), sum * ((i + 0.5) / count)) - until.begin());
     const exact_triangle& t = triangles_[std::min(at, triangles_.size() - 1)];
     double u = std::fmod((i + 1) * 0.7548776662466927, 1.0), v = std::fmod((i + 1) * 0.5698402909980532, 1.0);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
     points.push_back(t.corner(0) + u * (t.corner(1) - t.corner(0)) + v * (t.corner(2) - t.corner(0)));
   }
   return points;

@@ -54,7 +54,10 @@ pack_limits::pack_limits(const Eigen::AlignedBox3d& box, const pack_options& opt
 void arrange(packing& p, double volume) {
   std::stable_sort(p.spheres.begin(), p.spheres.end(),
                    [](const auto& a, const auto& b) { return a.radius > b.radius; });
-  if (!p.spheres.empty()) p.radius_max = p.spheres.front().radius, p.radius_min = p.spheres.back().radius;
+  if (!p.spheres.empty()) {
+    p.radius_max = p.spheres.front().radius;
+    p.radius_min = p.spheres.back().radius;
+  }
   for (const inner_sphere& s : p.spheres) p.fill += 4.0 / 3 * std::numbers::pi * std::pow(double(s.radius), 3) / volume;
 }
 

@@ -131,7 +131,10 @@ inline polygon_triangles least_area(std::span<const Eigen::Vector3d> vertices, s
         const double rest = least[i * n + k] + least[k * n + j];
         if (!(rest < best)) continue;
         const double area = rest + side.cross(vertices[polygon[k]] - a).norm() / 2;
-        if (area < best) best = area, between[i * n + j] = std::uint32_t(k);
+        if (area < best) {
+          best = area;
+          between[i * n + j] = std::uint32_t(k);
+        }
       }
       least[i * n + j] = best;
     }
@@ -165,10 +168,13 @@ inline polygon_triangles zipped(std::span<const Eigen::Vector3d> vertices, std::
     while (left - right > 1) {
       const bool by_left =
           (corner(left - 1) - corner(right)).squaredNorm() < (corner(right + 1) - corner(left)).squaredNorm();
-      if (by_left)
-        take(left, right, left - 1), --left;
-      else
-        take(left, right, right + 1), ++right;
+      if (by_left) {
+        take(left, right, left - 1);
+        --left;
+      } else {
+        take(left, right, right + 1);
+        ++right;
+      }
     }
   };
   // The ends of a crack are its sharpest corners.
@@ -187,7 +193,10 @@ inline polygon_triangles zipped(std::span<const Eigen::Vector3d> vertices, std::
     zip(ends[k].second, [&](std::size_t a, std::size_t b, std::size_t c) {
       area += (corner(b) - corner(a)).cross(corner(c) - corner(a)).norm() / 2;
     });
-    if (area < least) least = area, best = ends[k].second;
+    if (area < least) {
+      least = area;
+      best = ends[k].second;
+    }
   }
   polygon_triangles triangles;
   zip(best, [&](std::size_t a, std::size_t b, std::size_t c) {

@@ -78,7 +78,10 @@ inline enclosed enclosed_volume(const basic_winding<double>& w) {
         number -= hits[k].sign;  // +1: the ray leaves
         const double span = hits[k + 1].x - hits[k].x;
         if (number != 0) length += span;
-        if (span > least_piece(w)) lowest = std::min(lowest, number), highest = std::max(highest, number);
+        if (span > least_piece(w)) {
+          lowest = std::min(lowest, number);
+          highest = std::max(highest, number);
+        }
       }
     });
     return length * each;

@@ -36,7 +36,10 @@ class repeats {
   struct hash {
     std::size_t operator()(const triangle& key) const {
       std::uint64_t h = 0;
-      for (const std::uint32_t v : key) h = (h ^ v) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
+      for (const std::uint32_t v : key) {
+        h = (h ^ v) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 29;
+      }
       return h;
     }
   };
@@ -149,7 +152,10 @@ inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t>
   struct cell_hash {
     std::size_t operator()(const std::array<std::int64_t, 3>& cell) const {
       std::uint64_t h = 0;
-      for (const std::int64_t c : cell) h = (h ^ std::uint64_t(c)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
+      for (const std::int64_t c : cell) {
+        h = (h ^ std::uint64_t(c)) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 29;
+      }
       return h;
     }
   };
@@ -166,9 +172,10 @@ inline std::size_t weld_near(triangle_mesh& mesh, std::span<const std::uint32_t>
           near != kept.end())
         for (const std::uint32_t& other : near->second)
           if ((mesh.vertices[other] - p).norm() <= reach && !found) found = &other;
-    if (found)
-      number[v] = *found, ++moved;
-    else
+    if (found) {
+      number[v] = *found;
+      ++moved;
+    } else
       kept[cell].push_back(v);
   }
   for (auto& t : mesh.triangles)

@@ -49,8 +49,10 @@ class winding_grid {
       const double p = extent > 0 ? count / extent : 0;
       return T(p <= double(std::numeric_limits<T>::max()) ? p : 0);  // near the smallest number: one cell
     };
-    g_.columns = std::uint32_t(along(y_, z_)), g_.rows = std::uint32_t(along(z_, y_));
-    g_.per_y = per(g_.columns, y_), g_.per_z = per(g_.rows, z_);
+    g_.columns = std::uint32_t(along(y_, z_));
+    g_.rows = std::uint32_t(along(z_, y_));
+    g_.per_y = per(g_.columns, y_);
+    g_.per_z = per(g_.rows, z_);
   }
   rectangle covered(const crossing_triangle<T>& t) const {
     const auto& v = t.v;
@@ -94,7 +96,10 @@ class winding_grid {
     });
     w_.cells.assign(std::size_t(g_.columns) * g_.rows + 1, 0);
     w_.lists.reserve(entries.size());
-    for (const auto& [cell, triangle] : entries) ++w_.cells[cell + 1], w_.lists.push_back(triangle);
+    for (const auto& [cell, triangle] : entries) {
+      ++w_.cells[cell + 1];
+      w_.lists.push_back(triangle);
+    }
     for (std::size_t i = 1; i < w_.cells.size(); ++i) w_.cells[i] += w_.cells[i - 1];
   }
 
@@ -111,8 +116,10 @@ basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t
   if (!mesh.closed) throw std::invalid_argument("clearance: an open mesh has no inside; close it with caps");
   basic_winding<T> w;
   basic_winding_view<T>& g = w.grid;
-  for (int k = 0; k < 3; ++k)
-    g.low[k] = std::numeric_limits<T>::infinity(), g.high[k] = -std::numeric_limits<T>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    g.low[k] = std::numeric_limits<T>::infinity();
+    g.high[k] = -std::numeric_limits<T>::infinity();
+  }
   for (std::size_t i = 0; i < mesh.surface.triangles.size(); ++i) {
     auto corners = mesh.surface.triangles[i];
     if (!mesh.counts[i] || corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
@@ -121,7 +128,8 @@ basic_winding<T> make_winding(const closed_mesh& mesh, std::vector<std::uint32_t
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) {
         const T x = t.v[j][k] = T(mesh.surface.vertices[corners[j]][k]);
-        g.low[k] = std::min(g.low[k], x), g.high[k] = std::max(g.high[k], x);
+        g.low[k] = std::min(g.low[k], x);
+        g.high[k] = std::max(g.high[k], x);
       }
     if (bodies) bodies->push_back(mesh.body[i]);
   }

@@ -57,8 +57,7 @@ struct cells_law {
       if (its.empty()) continue;
       const std::span primitives(model.parts()[k].tree.primitives.data(), model.parts()[k].tree.primitives.size());
       const std::string which = what + ", part " + std::to_string(k);
-      for (int i = 0; i < looks; ++i)
-        look(part, cells, primitives, probe(part.facts, cells, primitives, d, i), which);
+      for (int i = 0; i < looks; ++i) look(part, cells, primitives, probe(part.facts, cells, primitives, d, i), which);
       v.require(cells({clearance::not_a_number, 0, 0}).node.kind == clearance::cell_kind::unlisted, which,
                 ": NaN is in a cell");
     }

@@ -120,10 +120,15 @@ struct device {
     if (!detail::waits_for_stream(reinterpret_cast<const void*>(kernel), id))
       return launch(kernel, blocks, threads, shared, arguments...);
     cudaLaunchAttribute early{};
-    early.id = cudaLaunchAttributeProgrammaticStreamSerialization, early.val.programmaticStreamSerializationAllowed = 1;
+    early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    early.val.programmaticStreamSerializationAllowed = 1;
     cudaLaunchConfig_t how{};
-    how.gridDim = blocks, how.blockDim = threads, how.dynamicSmemBytes = shared, how.stream = stream;
-    how.attrs = &early, how.numAttrs = 1;
+    how.gridDim = blocks;
+    how.blockDim = threads;
+    how.dynamicSmemBytes = shared;
+    how.stream = stream;
+    how.attrs = &early;
+    how.numAttrs = 1;
     check_cuda(cudaLaunchKernelEx(&how, kernel, arguments...), "kernel launch");
   }
 

@@ -46,8 +46,10 @@ class owned_buffer {
   }
   owned_buffer(owned_buffer&& other) noexcept { *this = std::move(other); }
   owned_buffer& operator=(owned_buffer&& other) noexcept {
-    std::swap(data_, other.data_), std::swap(size_, other.size_), std::swap(device_, other.device_),
-        std::swap(from_, other.from_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(device_, other.device_);
+    std::swap(from_, other.from_);
     return *this;
   }
   ~owned_buffer() {
@@ -83,7 +85,8 @@ inline cudaMemPool_t kept_pool(int device) {
   if (pool == nullptr) {
     cudaMemPoolProps properties{};
     properties.allocType = cudaMemAllocationTypePinned;
-    properties.location.type = cudaMemLocationTypeDevice, properties.location.id = device;
+    properties.location.type = cudaMemLocationTypeDevice;
+    properties.location.id = device;
     check_cuda(cudaMemPoolCreate(&pool, &properties), "cudaMemPoolCreate");
     std::uint64_t kept = 64 << 20;  // bytes; pools grow by 32 MiB, and one that has more than this releases everything
     check_cuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept), "cudaMemPoolSetAttribute");
@@ -187,8 +190,10 @@ class stream_buffer {
   }
   stream_buffer(stream_buffer&& other) noexcept { *this = std::move(other); }
   stream_buffer& operator=(stream_buffer&& other) noexcept {
-    std::swap(data_, other.data_), std::swap(size_, other.size_);
-    std::swap(device_, other.device_), std::swap(stream_, other.stream_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(device_, other.device_);
+    std::swap(stream_, other.stream_);
     return *this;
   }
   ~stream_buffer() {

@@ -36,7 +36,10 @@ class devices {
   /// another device.
   explicit devices(std::vector<device> each) : each_(std::move(each)) {
     check_any();
-    for (const device& on : each_) check_exists(on.id), check_stream(on);
+    for (const device& on : each_) {
+      check_exists(on.id);
+      check_stream(on);
+    }
   }
   /// All devices that this process sees.
   static devices all() {

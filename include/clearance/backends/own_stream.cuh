@@ -39,7 +39,9 @@ class own_event {
   }
   own_event(own_event&& other) noexcept { *this = std::move(other); }
   own_event& operator=(own_event&& other) noexcept {
-    return std::swap(event_, other.event_), std::swap(id_, other.id_), *this;
+    std::swap(event_, other.event_);
+    std::swap(id_, other.id_);
+    return *this;
   }
   ~own_event() {
     if (event_ != nullptr) on_device(id_, [this] { return cudaEventDestroy(event_); });

@@ -142,7 +142,9 @@ class device_order {
     const std::size_t n = source.size();
     const int bits = std::clamp(int(std::bit_width(n)) - points_of_cell, 12, 24), shift = 3 * morton_grid::bits - bits;
     const std::uint32_t cells = (1u << bits) + 1;
-    grow(coded_, n), grow(keys_, n), grow(counts_, cells);
+    grow(coded_, n);
+    grow(keys_, n);
+    grow(counts_, cells);
     on_.launch(detail::grid_kernel<S>, 1 + std::min(cells / 4096 + 1, 256u), detail::grid_threads, 0, source,
                grid_.data(), counts_.data(), cells);
     on_.launch(detail::count_kernel<S>, unsigned((n - 1) / detail::count_threads + 1), detail::count_threads, 0, source,
@@ -161,7 +163,9 @@ class device_order {
     std::size_t bytes = room_.size();
     if (cells > cells_) {
       Sums::exclusive(nullptr, bytes, counts_.data(), cells, on_.stream);
-      grow(room_, bytes), cells_ = cells, bytes = room_.size();
+      grow(room_, bytes);
+      cells_ = cells;
+      bytes = room_.size();
     }
     Sums::exclusive(room_.data(), bytes, counts_.data(), cells, on_.stream);
   }
@@ -216,7 +220,8 @@ __device__ void put_node(const tree_room& to, std::uint32_t node, const extent& 
   const real radius = high(mine.lower.x <= mine.upper.x ? reach(center) : -infinity);
   least = of_siblings(least, [](std::uint32_t a, std::uint32_t b) { return a < b ? a : b; });
   if (threadIdx.x % siblings != 0 || node == none) return;
-  to.boxes[node] = box, to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))},
+  to.boxes[node] = box;
+  to.balls[node] = {center, nothing ? -infinity : min(radius, farthest(box, center))};
   to.least[node] = least;
 }
 
@@ -236,7 +241,9 @@ __device__ void put_parent(const Tree& tree, std::uint32_t level, std::uint32_t 
   std::uint32_t least = ~0u;
   if (child < tree.size(level - 1)) {
     const std::uint32_t at = tree.begin[level - 1] + child;
-    box = to.boxes[at], b = to.balls[at], least = to.least[at];
+    box = to.boxes[at];
+    b = to.balls[at];
+    least = to.least[at];
   }
   const std::uint32_t number = child == none ? none : child / siblings,
                       node = number < tree.size(level) ? tree.begin[level] + number : none;
@@ -275,7 +282,8 @@ __global__ void __launch_bounds__(tile_threads)
     if (number != none) {
       const sample s = source[number];
       if (Order::counts ? mine.counts(s) : s.valid()) {
-        p = {s.position, number}, box.add(s.position);
+        p = {s.position, number};
+        box.add(s.position);
         if constexpr (Tree::of_balls) radius = source.around(number, s.position).radius;
       }
     }
@@ -356,10 +364,18 @@ class device_tree {
   template <class S, class Order>
   void put_up(const S& source, const view_type& shape, const Order& order, scan::drop_counts* dropped) {
     view_ = shape;
-    grow(points_, view_.count), grow(balls_, view_.nodes()), grow(least_, view_.nodes()), grow(boxes_, view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
+    grow(points_, view_.count);
+    grow(balls_, view_.nodes());
+    grow(least_, view_.nodes());
+    grow(boxes_, view_.nodes());
+    view_.points = points_.data();
+    view_.balls = balls_.data();
+    view_.boxes = boxes_.data();
     view_.least = least_.data();
-    if constexpr (ball_source<S>) grow(radii_, view_.count), grow(widest_, view_.nodes());
+    if constexpr (ball_source<S>) {
+      grow(radii_, view_.count);
+      grow(widest_, view_.nodes());
+    }
     const auto tree = view_of<S>();
     using tree_type = std::remove_const_t<decltype(tree)>;
     const detail::tree_room to{points_.data(), balls_.data(), least_.data(), boxes_.data(),

@@ -53,7 +53,8 @@ class host_tree {
   void read(host_workers& workers, const S& source, scan::drop_counts& dropped) {
     const std::size_t n = source.size();
     if constexpr (ball_source<S>) read_radii_.resize(n);
-    read_.resize(n), kept_.assign(pieces(n) + 1, 0);
+    read_.resize(n);
+    kept_.assign(pieces(n) + 1, 0);
     workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
       scan::drop_tally mine;
       std::size_t to = begin;
@@ -71,7 +72,8 @@ class host_tree {
 
   void encode(host_workers& workers) {
     const morton_grid grid = grid_of_samples();
-    codes_.resize(view_.count), others_.resize(view_.count);
+    codes_.resize(view_.count);
+    others_.resize(view_.count);
     workers.for_pieces(read_.size(), piece, [&](std::size_t begin, std::size_t) {
       const std::uint32_t first = kept_[begin / piece], count = kept_[begin / piece + 1] - first;
       for (std::uint32_t j = 0; j < count; ++j)
@@ -84,7 +86,9 @@ class host_tree {
     for (std::size_t i = 0; i < read_.size(); i += stride)
       if (i % piece < kept_[i / piece + 1] - kept_[i / piece]) {
         const vec3 p = read_[i].at;
-        along[0].push_back(p.x), along[1].push_back(p.y), along[2].push_back(p.z);
+        along[0].push_back(p.x);
+        along[1].push_back(p.y);
+        along[2].push_back(p.z);
       }
     if (along[0].empty()) return {};
     const auto count = std::uint32_t(along[0].size());
@@ -109,7 +113,8 @@ class host_tree {
       for (std::size_t row = 0; row < rows; ++row) {
         std::uint32_t& start = starts_[row * digits + d];
         const std::uint32_t count = start;
-        start = sum, sum += count;
+        start = sum;
+        sum += count;
       }
     workers.for_pieces(n, piece, [&](std::size_t begin, std::size_t end) {
       std::uint32_t* const start = starts_.data() + begin / piece * digits;
@@ -145,10 +150,17 @@ class host_tree {
   }
 
   void put_up(host_workers& workers) {
-    points_.resize(view_.count), boxes_.resize(view_.nodes()), balls_.resize(view_.nodes()),
-        least_.resize(view_.nodes());
-    if (with_radii_) radii_.resize(view_.count), widest_.resize(view_.nodes());
-    view_.points = points_.data(), view_.balls = balls_.data(), view_.boxes = boxes_.data(),
+    points_.resize(view_.count);
+    boxes_.resize(view_.nodes());
+    balls_.resize(view_.nodes());
+    least_.resize(view_.nodes());
+    if (with_radii_) {
+      radii_.resize(view_.count);
+      widest_.resize(view_.nodes());
+    }
+    view_.points = points_.data();
+    view_.balls = balls_.data();
+    view_.boxes = boxes_.data();
     view_.least = least_.data();
     for (std::uint32_t level = 0; level < view_.levels; ++level)
       workers.for_pieces(view_.size(level), piece / view_type::tile, [&](std::size_t begin, std::size_t end) {
@@ -168,25 +180,34 @@ class host_tree {
     const vec3 center = middle(box);
     real radius = 0;
     for (std::uint32_t i = begin; i < end; ++i) radius = max(radius, rough_length_up(points_[i].at - center));
-    boxes_[n] = box, balls_[n] = {center, radius}, least_[n] = least;
+    boxes_[n] = box;
+    balls_[n] = {center, radius};
+    least_[n] = least;
     if (!with_radii_) return;
     widest_[n] = 0;
-    for (std::uint32_t i = begin; i < end; ++i)
-      radii_[i] = read_radii_[codes_[i].at], widest_[n] = max(widest_[n], radii_[i]);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      radii_[i] = read_radii_[codes_[i].at];
+      widest_[n] = max(widest_[n], radii_[i]);
+    }
   }
   void put_node(std::uint32_t level, std::uint32_t n) {
     const std::uint32_t below = view_.begin[level - 1], begin = below + view_.first_below(level, n),
                         end = below + view_.end_below(level, n);
     extent box;
     std::uint32_t least = ~0u;
-    for (std::uint32_t i = begin; i < end; ++i)
-      box.add(boxes_[i].lower), box.add(boxes_[i].upper), least = std::min(least, least_[i]);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      box.add(boxes_[i].lower);
+      box.add(boxes_[i].upper);
+      least = std::min(least, least_[i]);
+    }
     const vec3 center = middle(box);
     real radius = 0;
     for (std::uint32_t i = begin; i < end; ++i)
       radius = max(radius, (rough_length_up(balls_[i].center - center) + balls_[i].radius) * (1 + slack));
     const std::uint32_t me = view_.begin[level] + n;
-    boxes_[me] = box, balls_[me] = {center, min(radius, farthest(box, center))}, least_[me] = least;
+    boxes_[me] = box;
+    balls_[me] = {center, min(radius, farthest(box, center))};
+    least_[me] = least;
     if (!with_radii_) return;
     widest_[me] = 0;
     for (std::uint32_t i = begin; i < end; ++i) widest_[me] = max(widest_[me], widest_[i]);

@@ -44,7 +44,9 @@ struct morton_grid {
     return std::uint32_t(min(max(offset * per_metre, 0), real((1 << bits) - 1)));
   }
   CLEARANCE_HD static std::uint32_t spread(std::uint32_t x) {
-    x = (x | x << 16) & 0x030000ff, x = (x | x << 8) & 0x0300f00f, x = (x | x << 4) & 0x030c30c3;
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
     return (x | x << 2) & 0x09249249;
   }
 };
@@ -65,8 +67,11 @@ struct pixel_order {
     if (columns == 0 || pixels % columns != 0) return;
     const std::uint64_t across = (std::uint64_t(columns) + side - 1) / side,
                         down = (std::uint64_t(pixels / columns) + side - 1) / side;
-    if (across * down >> (32 - 2 * bits) == 0)
-      width = columns, height = pixels / columns, squares = std::uint32_t(across);
+    if (across * down >> (32 - 2 * bits) == 0) {
+      width = columns;
+      height = pixels / columns;
+      squares = std::uint32_t(across);
+    }
   }
   std::uint32_t positions() const { return squares * ((height + side - 1) / side) * side * side; }
 
@@ -83,7 +88,9 @@ struct pixel_order {
 
  private:
   CLEARANCE_HD static std::uint32_t every_other(std::uint32_t i) {
-    i &= 0x555, i = (i | i >> 1) & 0x333, i = (i | i >> 2) & 0x70f;
+    i &= 0x555;
+    i = (i | i >> 1) & 0x333;
+    i = (i | i >> 2) & 0x70f;
     return (i | i >> 4) & (side - 1);
   }
 };
@@ -125,7 +132,8 @@ struct tree_view {
   CLEARANCE_HD explicit tree_view(std::uint32_t count) : count(count) {
     for (std::uint32_t size = count, group = Tile; count != 0; group = Fan) {
       size = (size - 1) / group + 1;
-      begin[levels + 1] = begin[levels] + size, ++levels;
+      begin[levels + 1] = begin[levels] + size;
+      ++levels;
       if (size <= Fan) break;
     }
   }

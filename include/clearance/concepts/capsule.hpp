@@ -90,7 +90,8 @@ CLEARANCE_HD real bound_along(const V& v, const capsule& c, real reach) {
     real t, value, slope;
     CLEARANCE_HD line(const V& v, const capsule& c, real t) : t(t) {
       const tangent its = bounding_volume_traits<V>::tangent_at(v, c.at(t));
-      value = its.distance, slope = dot(its.direction, c.along);
+      value = its.distance;
+      slope = dot(its.direction, c.along);
     }
   };
   const real noise = noise_along(c);

@@ -75,7 +75,10 @@ class staging_ring {
   static constexpr std::size_t rooms = 3;
 
   explicit staging_ring(const device& on) : on_(on), copies_(on.id) {
-    for (room& r : rooms_) r.copied = own_event(on.id), r.read = own_event(on.id);
+    for (room& r : rooms_) {
+      r.copied = own_event(on.id);
+      r.read = own_event(on.id);
+    }
   }
 
   /// Call it before the first turn, with the largest sizes of any turn, in bytes, on either side.
@@ -86,8 +89,14 @@ class staging_ring {
       return;
     wait();
     for (room& r : rooms_) {
-      if (r.pinned.size() < pinned) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(pinned, on_.id);
-      if (r.there.size() < there) r.there = {}, r.there = device_buffer<std::byte>(there, on_.id);
+      if (r.pinned.size() < pinned) {
+        r.pinned = {};
+        r.pinned = pinned_buffer<std::byte>(pinned, on_.id);
+      }
+      if (r.there.size() < there) {
+        r.there = {};
+        r.there = device_buffer<std::byte>(there, on_.id);
+      }
     }
   }
 
@@ -128,7 +137,10 @@ class staging_ring {
     check_cuda(cudaEventRecord(rooms_[k % rooms].read.get(), on_.stream), "cudaEventRecord");
   }
 
-  void wait() const { copies_.on().wait(), on_.wait(); }
+  void wait() const {
+    copies_.on().wait();
+    on_.wait();
+  }
 
  private:
   struct room {
@@ -147,7 +159,10 @@ class staging_ring {
     return attributes.type != cudaMemoryTypeUnregistered;
   }
   void need_within(std::size_t bytes, room& r) const {
-    if (r.pinned.size() < bytes) r.pinned = {}, r.pinned = pinned_buffer<std::byte>(r.there.size(), on_.id);
+    if (r.pinned.size() < bytes) {
+      r.pinned = {};
+      r.pinned = pinned_buffer<std::byte>(r.there.size(), on_.id);
+    }
   }
 
   device on_;
@@ -199,8 +214,10 @@ class chunked_search<device, PartView> {
     static_assert(
         requires(const S s) { s.at(s.bytes().data()); },
         "a source that does not say where its bytes are cannot be copied to a device");
-    if (seen != nullptr && boxes_.size() < seen->size())
-      boxes_ = {}, boxes_ = device_buffer<scan::boxed_piece>(seen->size(), on_.id);
+    if (seen != nullptr && boxes_.size() < seen->size()) {
+      boxes_ = {};
+      boxes_ = device_buffer<scan::boxed_piece>(seen->size(), on_.id);
+    }
     std::size_t pinned = 0;
     for (const point_range& r : ranges) pinned = std::max(pinned, cloud.bytes_for(r.end - r.begin));
     ring_.need(pinned, 0);

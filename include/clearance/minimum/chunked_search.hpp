@@ -49,7 +49,10 @@ class chunked {
   point_counts counts() const {
     point_counts all{size_, size_};
     for (const scan::boxed_piece& piece : pieces_)
-      for (int r = 1; r < drop_reasons; ++r) all.dropped[r] += piece.dropped[r], all.valid -= piece.dropped[r];
+      for (int r = 1; r < drop_reasons; ++r) {
+        all.dropped[r] += piece.dropped[r];
+        all.valid -= piece.dropped[r];
+      }
     return all;
   }
   void forget() { pieces_.clear(); }
@@ -104,7 +107,10 @@ class as_they_come {
     std::size_t k;
     const Load* load;
     auto operator*() const { return (*load)(k); }
-    iterator& operator++() { return ++k, *this; }
+    iterator& operator++() {
+      ++k;
+      return *this;
+    }
     friend bool operator==(const iterator& a, const iterator& b) { return a.k == b.k; }
   };
   iterator begin() const { return {0, load_}; }
@@ -131,7 +137,10 @@ loaded_source<C> load_range(const C& cloud, const point_range& range, std::byte*
 template <class Number>
 void number_as_in_cloud(min_distance_result& result, std::span<part_minimum> minima, const Number& number) {
   const auto put = [&](auto& r) {
-    if (r.cloud != none) r.point = number(r.cloud, r.point), r.cloud = 0;
+    if (r.cloud != none) {
+      r.point = number(r.cloud, r.point);
+      r.cloud = 0;
+    }
   };
   put(result);
   for (part_minimum& m : minima) put(m);
@@ -162,8 +171,10 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
     if (!cloud.pieces()[k].empty())
       for (std::size_t part = 0; part < facts.size(); ++part)
         if (const double its = scan::away(frame.places[part].around, cloud.pieces()[k], frame.origin);
-            its < least[part])
-          least[part] = its, nearest[part] = k;
+            its < least[part]) {
+          least[part] = its;
+          nearest[part] = k;
+        }
   if (minima.empty()) {  // the robot's nearest box is enough
     const auto best = std::size_t(std::ranges::min_element(least) - least.begin());
     nearest = {nearest[best]};
@@ -188,7 +199,8 @@ min_distance_result ask_chunked(chunked<C>& cloud, std::span<const part_facts> f
   search(cloud.where(matters), result, nullptr);
   // Counts are those of the whole cloud.
   const point_counts counts = cloud.counts();
-  result.seen = counts.seen, result.valid = counts.valid;
+  result.seen = counts.seen;
+  result.valid = counts.valid;
   std::ranges::copy(counts.dropped, result.dropped);
   frames::allow_for_too_close(result);
   return result;
@@ -265,7 +277,8 @@ class chunked_search<host, PartView> {
       const std::size_t points = ranges[r].end - ranges[r].begin;
       if (!addressed_cloud<C> || turns.empty() || turns.back().points + points > most)
         turns.push_back({r, r, numbers_.size(), 0});
-      turns.back().last = r + 1, turns.back().points += points;
+      turns.back().last = r + 1;
+      turns.back().points += points;
       for (std::size_t at = ranges[r].begin; at < ranges[r].end; at += scan::piece_points)
         numbers_.push_back(std::uint32_t(at / scan::piece_points));
     }

@@ -52,7 +52,10 @@ class device_search {
   }
 
   /// Drops what is known of the last frame. The next one starts cold; its answer is the same.
-  void forget() { launch_.forget(), forget_bounds(); }
+  void forget() {
+    launch_.forget();
+    forget_bounds();
+  }
 
   /// The next frame alone, which must not be `PerPart`, need not find anything farther than `within`. Enqueued.
   void bound_by(real within) {
@@ -133,7 +136,10 @@ class device_search {
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
          Tally::bound_per_part ? end.minima + before : nullptr, launch_.fields(group), scan::elements_of(source)});
-    if (alone) a.done = end.done, a.number = end.number;
+    if (alone) {
+      a.done = end.done;
+      a.number = end.number;
+    }
     place(a);
     launch_(source, a);
   }

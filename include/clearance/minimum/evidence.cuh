@@ -23,7 +23,11 @@ __device__ Record least_of_warp(const Record& r) {
     those = __ballot_sync(all_lanes, in && value == least);
   };
   keep(std::uint32_t(r.key >> 32));
-  if ((those & (those - 1)) != 0) keep(std::uint32_t(r.key)), keep(r.part), keep(r.id);  // a tie of distances
+  if ((those & (those - 1)) != 0) {
+    keep(std::uint32_t(r.key));
+    keep(r.part);
+    keep(r.id);
+  }  // a tie of distances
   const int from = __ffs(int(those)) - 1;
   Record least;
   least.key = __shfl_sync(all_lanes, r.key, from);
@@ -108,7 +112,8 @@ struct evidence {
       if (r.id == none) {
         nearest_primitive<primitive_type> nearest{infinity};
         scan::walk_for(scan::walk_alone<Tally>{}, steps::view(r.part).tree, in_part(), nearest);
-        r.id = nearest.id, primitive = nearest.primitive;
+        r.id = nearest.id;
+        primitive = nearest.primitive;
         return nearest.within > 0;
       }
     return false;
@@ -128,10 +133,14 @@ struct evidence {
   __device__ void write(const arguments& a) {
     const bool inside = complete();
     min_distance_result& out = *a.answer.result;
-    out.cloud = a.cloud, out.point = key_index(r.key) - a.first, out.part = r.part, out.primitive = r.id;
+    out.cloud = a.cloud;
+    out.point = key_index(r.key) - a.first;
+    out.part = r.part;
+    out.primitive = r.id;
     out.at = at(a);
     const contact here = touching(a, inside);
-    out.nearest = here.nearest, out.normal = here.normal;
+    out.nearest = here.nearest;
+    out.normal = here.normal;
   }
 };
 
@@ -144,7 +153,8 @@ __device__ min_distance_result bracket_of(const scan::scan_arguments<Tally>& a, 
   const frames::frame_facts& frame = a.facts();
   min_distance_result r;
   if (best.key == no_key) return r;
-  r.distance = key_distance(best.key), r.part = best.part;
+  r.distance = key_distance(best.key);
+  r.part = best.part;
   double lower;
   if constexpr (Tally::bound_per_part)
     lower = frames::certain_distance(
@@ -178,7 +188,11 @@ __device__ void write_bracket(const scan::scan_arguments<Tally>& a, min_distance
   frames::allow_for_too_close(r);
   // If a pose on the device is not rigid, nothing is known. This state stops a robot.
   if (!scan::memory_of_block<Tally>().rigid) r.state = clearance::state::possible;
-  out.state = r.state, out.distance = r.distance, out.lower = r.lower, out.upper = r.upper, out.seen = r.seen,
+  out.state = r.state;
+  out.distance = r.distance;
+  out.lower = r.lower;
+  out.upper = r.upper;
+  out.seen = r.seen;
   out.valid = r.valid;
   for (int k = 0; k < drop_reasons; ++k) out.dropped[k] = r.dropped[k];
 }

@@ -73,7 +73,9 @@ struct field_sample {
     if (!(steps >= 0 && steps < 65535)) return give_up();
     c.value = std::uint16_t(steps);
     const auto whole = [](real u) { return std::int8_t(rough_max(rough_min(u * 127, 127), -127)); };
-    c.way[0] = whole(direction.x), c.way[1] = whole(direction.y), c.way[2] = whole(direction.z);
+    c.way[0] = whole(direction.x);
+    c.way[1] = whole(direction.y);
+    c.way[2] = whole(direction.z);
     const vec3 way = scaled(1.0f / 127, {real(c.way[0]), real(c.way[1]), real(c.way[2])});
     const real plane = fma(grid.unit, real(c.value), grid.least), half = grid.step / 2;
     real above = 0;
@@ -87,7 +89,8 @@ struct field_sample {
     walk(part->tree, q, lowest);
     const real most = units(above), least = units(plane - lowest.lowest);
     if (!(most < 255 && least < 255)) return give_up();
-    c.above = std::uint8_t(most), c.below = std::uint8_t(least);
+    c.above = std::uint8_t(most);
+    c.below = std::uint8_t(least);
     const real turn = half * (absolute(way.x) + absolute(way.y) + absolute(way.z));
     c.side = side(q, plane - turn - real(c.below) * grid.step / 127 - grid.error);
     cells[i] = c;
@@ -110,7 +113,7 @@ struct field_sample {
 /// The grids of a field with about `cubes` cubes each; none if the part has no finite size.
 inline field_view field_around(const extent& box, const ball& around, std::size_t cubes) {
   field_view v;
-  v.around = around,
+  v.around = around;
   v.center = {(box.lower.x + box.upper.x) / 2, (box.lower.y + box.upper.y) / 2, (box.lower.z + box.upper.z) / 2};
   const vec3 to = box.upper - v.center, from = v.center - box.lower;
   v.half = {max(to.x, from.x), max(to.y, from.y), max(to.z, from.z)};
@@ -121,17 +124,20 @@ inline field_view field_around(const extent& box, const ball& around, std::size_
     const double more = (double(v.thickness) * double((2u << l) - 1)) * (1 + 0x1p-16);
     const double side[3] = {2 * (v.half.x + more), 2 * (v.half.y + more), 2 * (v.half.z + more)};
     double step = std::cbrt(side[0] * side[1] * side[2] / double(cubes));
-    g.step = real(step), step = double(g.step);
+    g.step = real(step);
+    step = double(g.step);
     g.inverse = {real(1 / step), real(1 / step), real(1 / step)};
     for (int k = 0; k < 3; ++k) g.size[k] = std::uint32_t(std::ceil(side[k] / step)) + 1;
     const auto corner = [&](real center, std::uint32_t size) { return real(double(center) - step * size / 2); };
     g.low = {corner(v.center.x, g.size[0]), corner(v.center.y, g.size[1]), corner(v.center.z, g.size[2])};
     const double across = step * (double(g.size[0]) + g.size[1] + g.size[2]) + 4 * double(around.radius);
-    g.least = -2 * around.radius, g.unit = real((across + 2 * double(around.radius)) / 65000);
+    g.least = -2 * around.radius;
+    g.unit = real((across + 2 * double(around.radius)) / 65000);
     g.error =
         rounded_up(8 * double(slack) * (across + std::abs(v.center.x) + std::abs(v.center.y) + std::abs(v.center.z)) +
                    double(g.unit) * 0x1p-10);
-    g.first = first, first += g.cubes();
+    g.first = first;
+    first += g.cubes();
   }
   return v;
 }
@@ -141,7 +147,8 @@ template <class Part>
 extent box_around(const Part& part) {
   extent box;
   const auto add = [&box](const ball& b) {
-    box.add(b.center - vec3{b.radius, b.radius, b.radius}), box.add(b.center + vec3{b.radius, b.radius, b.radius});
+    box.add(b.center - vec3{b.radius, b.radius, b.radius});
+    box.add(b.center + vec3{b.radius, b.radius, b.radius});
   };
   if constexpr (requires { part.tree.primitives; }) {
     for (const auto& p : part.tree.primitives)
@@ -159,16 +166,20 @@ std::optional<field<host>> field_of(const Part& part, const field_options& optio
   constexpr std::size_t fewest = 512, each = field_view::levels * sizeof(field_cell);
   constexpr std::uint64_t most = std::uint64_t(1) << 34;  // cells are numbered in 32 bits
   const std::size_t cubes = options.bytes / each;
-  if (cubes < fewest)
-    return why_not = std::to_string(options.bytes) + " bytes are too few for a field; it needs " +
-                     std::to_string(fewest * each),
-           std::nullopt;
-  if (options.bytes > most)
-    return why_not = std::to_string(options.bytes) + " bytes are too many for a field; it takes at most " +
-                     std::to_string(most),
-           std::nullopt;
-  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
-    return why_not = "a part without a finite size has no field", std::nullopt;
+  if (cubes < fewest) {
+    why_not =
+        std::to_string(options.bytes) + " bytes are too few for a field; it needs " + std::to_string(fewest * each);
+    return std::nullopt;
+  }
+  if (options.bytes > most) {
+    why_not =
+        std::to_string(options.bytes) + " bytes are too many for a field; it takes at most " + std::to_string(most);
+    return std::nullopt;
+  }
+  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f)) {
+    why_not = "a part without a finite size has no field";
+    return std::nullopt;
+  }
   return field<host>{{}, field_around(box_around(part), {facts.center, facts.radius}, cubes), options.bytes};
 }
 
@@ -179,10 +190,11 @@ std::vector<field_cell> sampled_cells(const B& on, const Part& part, const field
   const auto view = there.view();
   const std::uint64_t need = stack_need(view.tree.depth(), view.tree.width());
   if constexpr (requires { typename B::own_scan; })
-    if (need > near_first::capacity)
-      return why_not = "its tree needs a stack of " + std::to_string(need) +
-                       " entries, too many for a device; sample its field on a host",
-             std::vector<field_cell>{};
+    if (need > near_first::capacity) {
+      why_not = "its tree needs a stack of " + std::to_string(need) +
+                " entries, too many for a device; sample its field on a host";
+      return std::vector<field_cell>{};
+    }
   using part_view = std::remove_const_t<decltype(view)>;
   const std::size_t all = shape.all_cubes();
   const auto views = on.copy_in(std::span<const part_view>(&view, 1));
@@ -193,8 +205,10 @@ std::vector<field_cell> sampled_cells(const B& on, const Part& part, const field
   const any_depth walk{need};
   for (const auto& g : shape.grids)
     on.for_each(g.cubes(), field_sample<part_view>{views.data(), g, walk, cells.data() + g.first, lost.data()});
-  if (on.copy_out(lost.data(), 1)[0] != 0)
-    return why_not = "its distances are not finite, so it has no field", std::vector<field_cell>{};
+  if (on.copy_out(lost.data(), 1)[0] != 0) {
+    why_not = "its distances are not finite, so it has no field";
+    return std::vector<field_cell>{};
+  }
   return on.copy_out(cells.data(), all);
 }
 

@@ -24,7 +24,9 @@ class host_search {
   template <class Clouds>
   void operator()(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
                   part_minimum* minima = nullptr) {
-    *result = {}, totals_ = {}, counts_ = {};
+    *result = {};
+    totals_ = {};
+    counts_ = {};
     if (const real within = std::exchange(within_, infinity); within < infinity) totals_.best = make_key(within, none);
     const std::size_t each = minima == nullptr ? 0 : model_.size();
     const bool own = each != 0 || !extra_.empty();
@@ -45,7 +47,10 @@ class host_search {
   }
 
   /// Drops what is known of the last frame. The next one takes longer; its answer is the same.
-  void forget() { last_.clear(), within_ = infinity; }
+  void forget() {
+    last_.clear();
+    within_ = infinity;
+  }
 
   /// The next frame alone, which must not ask for minima, need not find anything farther than `within`.
   void bound_by(real within) {

@@ -26,12 +26,17 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Tally>& 
     case 2: {
       const bool inside = e.complete();
       const contact here = e.touching(a, inside);
-      s.answer.nearest = here.nearest, s.answer.normal = here.normal, s.answer.primitive = e.r.id;
+      s.answer.nearest = here.nearest;
+      s.answer.normal = here.normal;
+      s.answer.primitive = e.r.id;
       break;
     }
     case 3: {
       const min_distance_result r = bracket_of(a, s.best[0], false);
-      s.answer.state = r.state, s.answer.part = r.part, s.answer.distance = r.distance, s.answer.lower = r.lower,
+      s.answer.state = r.state;
+      s.answer.part = r.part;
+      s.answer.distance = r.distance;
+      s.answer.lower = r.lower;
       s.answer.upper = r.upper;
       break;
     }
@@ -74,25 +79,42 @@ struct one_minimum {
       if (const auto c = a.answer.candidates[b]; before(c.r, mine.r)) mine = c;
     const bool here = key != no_key && key_index(key) >= a.first, won = here && mine.r.key == key;
     if (here && s.drafted != key) {
-      if (won) s.best[0] = mine.r, s.nearest = mine.primitive;
+      if (won) {
+        s.best[0] = mine.r;
+        s.nearest = mine.primitive;
+      }
       __syncthreads();
       if (t >= 32 && t < 128) draft_answer(a, source);
     }
     if (here) {
       min_distance_result& out = *a.answer.result;
-      if (t == 32) out.at = s.answer.at, out.cloud = a.cloud, out.point = key_index(key) - a.first;
-      if (t == 64) out.nearest = s.answer.nearest, out.normal = s.answer.normal, out.primitive = s.answer.primitive;
+      if (t == 32) {
+        out.at = s.answer.at;
+        out.cloud = a.cloud;
+        out.point = key_index(key) - a.first;
+      }
+      if (t == 64) {
+        out.nearest = s.answer.nearest;
+        out.normal = s.answer.normal;
+        out.primitive = s.answer.primitive;
+      }
       if (t == 96) out.part = s.answer.part;
     }
     if (t == 96 && a.last) {
       const counted all(a);
       min_distance_result r;
-      if (here)
-        r.state = s.answer.state, r.part = s.answer.part, r.distance = s.answer.distance, r.lower = s.answer.lower,
+      if (here) {
+        r.state = s.answer.state;
+        r.part = s.answer.part;
+        r.distance = s.answer.distance;
+        r.lower = s.answer.lower;
         r.upper = s.answer.upper;
-      else
+      } else
         r = bracket_of(a, key != no_key ? state.best[0] : typename Tally::record{}, false);
-      if (all.certain && r.part != none) r.state = clearance::state::collision, r.lower = r.upper = 0;
+      if (all.certain && r.part != none) {
+        r.state = clearance::state::collision;
+        r.lower = r.upper = 0;
+      }
       write_bracket(a, r, all);
     }
     if (won) state.best[0] = mine.r;
@@ -139,7 +161,8 @@ struct part_minima {
         mine.complete();
         a.answer.minima[slot] = {key_distance(mine.r.key), a.cloud, key_index(mine.r.key) - a.first, mine.r.id};
       } else if (mine.r.key == no_key) {
-        a.answer.witnesses[slot].r = {}, a.answer.minima[slot] = {};
+        a.answer.witnesses[slot].r = {};
+        a.answer.minima[slot] = {};
       }
     }
   }
@@ -161,7 +184,10 @@ struct part_minima {
       for (std::uint32_t b = lane; b < gridDim.x; b += 32)
         if (const record r = a.answer.records[slot * gridDim.x + b]; before(r, least)) least = r;
       least = least_of_warp(least);
-      if (lane == k) its = least, s.best[slot] = least;
+      if (lane == k) {
+        its = least;
+        s.best[slot] = least;
+      }
     }
     const evidence_type mine(a, source, rigid() ? its : record{});
     __syncthreads();
@@ -215,7 +241,11 @@ struct least {
     draft answer;
 
     __device__ void clear(std::uint32_t thread) {
-      if (thread < slots) best[thread] = {}, least[thread] = no_key, lock[thread] = 0;
+      if (thread < slots) {
+        best[thread] = {};
+        least[thread] = no_key;
+        lock[thread] = 0;
+      }
       if (thread == scan::block_threads - 64) kept = 0;
     }
   };
@@ -300,7 +330,10 @@ struct least {
     const std::uint32_t kept = scan::memory_of_block<least>().answer.kept;
     state.seeded = 0;
     state.witnesses = PerPart ? a.parts : (kept < 31 ? kept + 1 : 32);
-    if (a.last) state.certain = 0, state.best_key = no_key;
+    if (a.last) {
+      state.certain = 0;
+      state.best_key = no_key;
+    }
   }
 };
 

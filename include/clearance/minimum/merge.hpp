@@ -26,15 +26,20 @@ CLEARANCE_HD inline min_distance_result merged(const min_distance_result& a, con
                     (b.part == none && b.state == state::possible);                    // a pose was not rigid
   const bool nothing = a.part == none && b.part == none && a.state == state::no_data;  // b may know that all are far
   min_distance_result r = nothing || nearer(b, a) ? b : a;
-  r.seen = a.seen, r.valid = a.valid;
+  r.seen = a.seen;
+  r.valid = a.valid;
   for (int k = 0; k < drop_reasons; ++k) r.dropped[k] = a.dropped[k];
   if (a.state == state::collision || b.state == state::collision) {
-    r.state = state::collision, r.lower = r.upper = 0;
+    r.state = state::collision;
+    r.lower = r.upper = 0;
   } else if (a.part != none && b.part != none) {
     r.lower = min(a.lower, b.lower);
     r.state = r.lower > 0 ? state::free : state::possible;
   }
-  if (lost && r.state != state::collision) r.state = state::possible, r.lower = 0;
+  if (lost && r.state != state::collision) {
+    r.state = state::possible;
+    r.lower = 0;
+  }
   return r;
 }
 
@@ -45,7 +50,8 @@ CLEARANCE_HD inline min_distance_result merged(const min_distance_result& a, con
 /// cloud; otherwise it may be narrower.
 CLEARANCE_HD inline min_distance_result merge(const min_distance_result& a, const min_distance_result& b) {
   min_distance_result r = minimum::merged(a, b);
-  r.seen += b.seen, r.valid += b.valid;
+  r.seen += b.seen;
+  r.valid += b.valid;
   for (int k = 0; k < drop_reasons; ++k) r.dropped[k] += b.dropped[k];
   frames::allow_for_too_close(r);
   return r;
@@ -61,7 +67,10 @@ CLEARANCE_HD inline part_minimum merge(const part_minimum& a, const part_minimum
 /// began at point `first`.
 template <class Answer>
 CLEARANCE_HD Answer renumbered(Answer r, std::uint32_t cloud, std::uint32_t first = 0) {
-  if (r.cloud != none) r.cloud += cloud, r.point += first;
+  if (r.cloud != none) {
+    r.cloud += cloud;
+    r.point += first;
+  }
   return r;
 }
 
@@ -96,14 +105,19 @@ struct of_pieces {
   /// pair of another piece may be certainly inside although it is less deep, if its part has a smaller tolerance.
   CLEARANCE_HD min_distance_result answer(bool has_interior) const {
     min_distance_result r = all;
-    if (!has_interior && r.state == state::collision && nearest_state != state::collision)
-      r.state = state::possible, r.upper = nearest_upper;
+    if (!has_interior && r.state == state::collision && nearest_state != state::collision) {
+      r.state = state::possible;
+      r.upper = nearest_upper;
+    }
     return r;
   }
 
  private:
   CLEARANCE_HD void consider(const of_pieces& other) {
-    if (nearer(other.all, all)) nearest_state = other.nearest_state, nearest_upper = other.nearest_upper;
+    if (nearer(other.all, all)) {
+      nearest_state = other.nearest_state;
+      nearest_upper = other.nearest_upper;
+    }
   }
 };
 

@@ -39,7 +39,10 @@ struct seed_body {
       if (body.answer.bound_per_part()) seed(body, p, index, k);  // every part wants a bound of its own
       const ball& around = body.places[k].around;
       const real lb = length(p - around.center) - around.radius;
-      if (lb < least) least = lb, nearest_part = k;
+      if (lb < least) {
+        least = lb;
+        nearest_part = k;
+      }
     }
     if (!body.answer.bound_per_part()) seed(body, p, index, nearest_part);
   }
@@ -67,7 +70,9 @@ class plain_search {
     if (!extra.empty()) on_.stage(std::span<const real>(extra), extras.data());
     const bool each = minima != nullptr || !extra.empty();
     auto part_best = on_.template make_scratch<distance_key>(each ? parts : 0);
-    fill(all.data(), totals{}, 1), fill(counts.data(), scan::drop_counts{}, 1), fill(result, min_distance_result{}, 1);
+    fill(all.data(), totals{}, 1);
+    fill(counts.data(), scan::drop_counts{}, 1);
+    fill(result, min_distance_result{}, 1);
     if (each) fill(part_best.data(), no_key, parts);
     if (minima != nullptr) fill(minima, part_minimum{}, parts);
     const shared_bounds bounds{all.data(), each ? part_best.data() : nullptr, extra.empty() ? nullptr : extras.data()};

@@ -27,7 +27,11 @@ struct nearest_primitive {
   CLEARANCE_HD real reach() const { return within; }
   CLEARANCE_HD void offer(std::uint32_t, real) {}
   CLEARANCE_HD void offer(std::uint32_t i, real distance, const P& p) {
-    if (distance < within || (distance == within && i < id)) within = distance, id = i, primitive = p;
+    if (distance < within || (distance == within && i < id)) {
+      within = distance;
+      id = i;
+      primitive = p;
+    }
   }
   CLEARANCE_HD std::uint32_t result() const { return id; }
 };
@@ -133,8 +137,12 @@ struct resolve_body {
       const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);
       const contact here = f.at(scan::place_at(q, share), places[k].world_from_part);
       result->distance = f.distance;
-      result->cloud = cloud, result->point = point, result->part = k, result->primitive = f.nearest.id;
-      result->at = world_from_cloud(scan::place_at(p, share)), result->nearest = here.nearest,
+      result->cloud = cloud;
+      result->point = point;
+      result->part = k;
+      result->primitive = f.nearest.id;
+      result->at = world_from_cloud(scan::place_at(p, share));
+      result->nearest = here.nearest;
       result->normal = here.normal;
       return;
     }

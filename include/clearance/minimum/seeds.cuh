@@ -147,7 +147,11 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
     const ball around = parts::place(k).root.around;
     const vec3 d = at - around.center;
     const real power = fma(-around.radius, around.radius, dot(d, d));
-    if (power < least_power) least_power = power, k_least = k, x = at;
+    if (power < least_power) {
+      least_power = power;
+      k_least = k;
+      x = at;
+    }
   };
   if (end - first < quad) {
     for (std::uint32_t k = first; k < end; ++k)
@@ -163,7 +167,8 @@ __noinline__ __device__ void seed_cold(scan::quad_points p) {
   } else {
     const real nearest = team.least(least_power);
     const int winner = team.first(least_power < infinity && least_power == nearest);
-    k_least = team.from(winner, k_least), x = team.from(winner, x);
+    k_least = team.from(winner, k_least);
+    x = team.from(winner, x);
     d = scan::descend(scan::steps_of_part<Tally>{k_least}, parts::place(k_least).part_from_cloud(x), winner >= 0, team);
   }
   std::uint32_t bound = d < infinity ? ordered(d) : no_bound;

@@ -58,13 +58,16 @@ struct labels_of {
   static __device__ void conclude(const arguments& a) {
     if (!a.answer.last_group || threadIdx.x >= 32) return;
     label_counts all{0, 0};
-    for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32)
-      all.own += a.answer.labelled[b].own, all.uncertain += a.answer.labelled[b].uncertain;
+    for (std::uint32_t b = threadIdx.x; b < gridDim.x; b += 32) {
+      all.own += a.answer.labelled[b].own;
+      all.uncertain += a.answer.labelled[b].uncertain;
+    }
     all = {scan::sum_of(all.own), scan::sum_of(all.uncertain)};
     auto& counts = *a.answer.answer.counts;
-    if (threadIdx.x == 0)
-      counts.own = (a.cloud == 0 ? 0 : counts.own) + all.own,
+    if (threadIdx.x == 0) {
+      counts.own = (a.cloud == 0 ? 0 : counts.own) + all.own;
       counts.uncertain = (a.cloud == 0 ? 0 : counts.uncertain) + all.uncertain;
+    }
   }
 
  private:
@@ -90,7 +93,8 @@ struct labels_of {
       own += __popc(__vcmpeq4(four, std::uint32_t(point_label::own) * 0x01010101u)) / 8;
       uncertain += __popc(__vcmpeq4(four, std::uint32_t(point_label::uncertain) * 0x01010101u)) / 8;
     }
-    own = scan::sum_of(own), uncertain = scan::sum_of(uncertain);
+    own = scan::sum_of(own);
+    uncertain = scan::sum_of(uncertain);
     if (threadIdx.x % 32 == 0 && own != 0) atomicAdd(&s.answer.own, own);
     if (threadIdx.x % 32 == 0 && uncertain != 0) atomicAdd(&s.answer.uncertain, uncertain);
     __syncthreads();

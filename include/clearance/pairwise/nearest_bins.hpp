@@ -117,7 +117,8 @@ struct open_windows {
   nearest_window* windows;
   std::uint32_t *bounds, wanted, bound;
   CLEARANCE_HD void operator()(std::size_t p) const {
-    windows[p] = {.wanted = wanted, .bound = bound}, bounds[p] = bound;
+    windows[p] = {.wanted = wanted, .bound = bound};
+    bounds[p] = bound;
   }
 };
 /// After a pass over some of the points: the wanted one of those is a bound for the wanted one of all, and nothing is

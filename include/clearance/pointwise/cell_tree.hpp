@@ -76,7 +76,10 @@ struct mark_candidates {
     real least = infinity;
     std::uint32_t nearest[cell_box::probes] = {};
     for (std::uint32_t n = 0; n < task.count; ++n)
-      if (const real d = candidate(n).distance(box.middle); d < least) least = d, nearest[cell_box::corners] = n;
+      if (const real d = candidate(n).distance(box.middle); d < least) {
+        least = d;
+        nearest[cell_box::corners] = n;
+      }
     // No distance changes faster than its place, so one that is far from the middle is nearest nowhere.
     const real far = least + 2 * 1.7321f * box.half + box.noise;
     real least_at[cell_box::corners];
@@ -85,7 +88,10 @@ struct mark_candidates {
       const primitive_type p = candidate(n);
       if (!(p.distance(box.middle) <= far)) return false;
       for (int c = 0; c < cell_box::corners; ++c)
-        if (const real d = p.distance(box.probe(c)); d < least_at[c]) least_at[c] = d, nearest[c] = n;
+        if (const real d = p.distance(box.probe(c)); d < least_at[c]) {
+          least_at[c] = d;
+          nearest[c] = n;
+        }
       return true;
     });
     rival rivals[cell_box::probes];
@@ -117,8 +123,10 @@ struct mark_candidates {
 
     rival() = default;
     CLEARANCE_HD rival(const core_place& s, const cell_box& box) : farthest(0), radius(s.radius) {
-      for (int c = 0; c < cell_box::corners; ++c)
-        away[c] = length(box.probe(c) - s.at), farthest = max(farthest, away[c]);
+      for (int c = 0; c < cell_box::corners; ++c) {
+        away[c] = length(box.probe(c) - s.at);
+        farthest = max(farthest, away[c]);
+      }
     }
   };
 
@@ -221,7 +229,8 @@ class cell_tree {
         primitives_(primitives) {
     const double side = 2 * (double(facts.radius) + options.reach);
     cells_view& shape = made_.shape;
-    shape.step = rounded_up(side / (1u << cells_view::deepest)), shape.inverse = real(1 / double(shape.step));
+    shape.step = rounded_up(side / (1u << cells_view::deepest));
+    shape.inverse = real(1 / double(shape.step));
     const real half = shape.step * real(1u << (cells_view::deepest - 1));
     shape.low = {facts.center.x - half, facts.center.y - half, facts.center.z - half};
     made_.around = {facts.center, facts.radius};
@@ -236,10 +245,11 @@ class cell_tree {
       std::vector<cell_found> found;
       if (quick(tasks)) found = mark(tasks);
       if (found.empty() || !fits(tasks.size(), found)) {
-        if (in_table)
-          return why_not = std::to_string(bytes_) + " bytes are too few for cells of its " +
-                           std::to_string(primitives_) + " primitives",
-                 cells<host>{};
+        if (in_table) {
+          why_not = std::to_string(bytes_) + " bytes are too few for cells of its " + std::to_string(primitives_) +
+                    " primitives";
+          return cells<host>{};
+        }
         enter(inner);
         break;
       }
@@ -252,10 +262,11 @@ class cell_tree {
       if (inner.empty()) break;
       tasks = children(inner);
     }
-    if (unlisted_ > leaves_ / 8)
-      return why_not = "its " + std::to_string(primitives_) + " primitives are too close together for cells of " +
-                       std::to_string(bytes_) + " bytes",
-             cells<host>{};
+    if (unlisted_ > leaves_ / 8) {
+      why_not = "its " + std::to_string(primitives_) + " primitives are too close together for cells of " +
+                std::to_string(bytes_) + " bytes";
+      return cells<host>{};
+    }
     return std::move(made_);
   }
 
@@ -289,7 +300,10 @@ class cell_tree {
 
   std::vector<cell_found> mark(std::vector<cell_task>& tasks) {
     std::uint32_t words = 0;
-    for (cell_task& t : tasks) t.marks = words, words += (t.count + 31) / 32;
+    for (cell_task& t : tasks) {
+      t.marks = words;
+      words += (t.count + 31) / 32;
+    }
     tasks_ = on_.copy_in(std::span<const cell_task>(tasks));
     marks_ = on_.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>(words)));
     auto found = on_.template make_scratch<cell_found>(tasks.size());
@@ -307,7 +321,10 @@ class cell_tree {
   /// Is there room for these cells, were they all leaves, and for lists of their candidates meanwhile?
   bool fits(std::size_t cells, const std::vector<cell_found>& found) const {
     std::size_t entries = made_.entries.size(), places = 0;
-    for (const cell_found& f : found) entries += f.count <= longest ? f.count : 0, places += f.count;
+    for (const cell_found& f : found) {
+      entries += f.count <= longest ? f.count : 0;
+      places += f.count;
+    }
     return (made_.nodes.size() + cells) * sizeof(cell_node) + entries * sizeof(cell_entry) <= bytes_ &&
            places <= 4 * std::uint64_t(bytes_) && places < none;
   }
@@ -325,14 +342,20 @@ class cell_tree {
   void list(std::vector<cell_task>& tasks, const std::vector<cell_found>& found) {
     std::vector<std::uint32_t> first;
     std::uint32_t all = 0;
-    for (const cell_found& f : found) first.push_back(all), all += f.count;
+    for (const cell_found& f : found) {
+      first.push_back(all);
+      all += f.count;
+    }
     const auto begin = on_.copy_in(std::span<const std::uint32_t>(first));
     auto lists = on_.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>(all)));
     on_.for_each(tasks.size(),
                  list_candidates{tasks_.data(), lists_.data(), marks_.data(), begin.data(), lists.data()});
     on_.wait();
     lists_ = std::move(lists);
-    for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].first = first[i], tasks[i].count = found[i].count;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      tasks[i].first = first[i];
+      tasks[i].count = found[i].count;
+    }
   }
   bool is_leaf(const cell_task& t, const cell_found& f) const {
     if (t.up > cells_view::deepest - cells_view::top) return false;
@@ -350,7 +373,8 @@ class cell_tree {
         ++unlisted_;
         continue;
       }
-      c.marks = entries, entries += c.count;
+      c.marks = entries;
+      entries += c.count;
       leaves.push_back(c);
     }
     if (leaves.empty()) return;
@@ -386,12 +410,15 @@ cells<host> made_cells(const B& on, const Part& part, const cell_options& option
     throw std::invalid_argument("clearance::with_cells: cells reach " + std::to_string(options.reach) +
                                 " m, which must be from 0 to 1,000,000");
   constexpr std::uint64_t most = std::uint64_t(1) << 34;  // entries are numbered in 32 bits
-  if (options.bytes > most)
-    return why_not = std::to_string(options.bytes) + " bytes are too many for cells; they take at most " +
-                     std::to_string(most),
-           cells<host>{};
-  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f))
-    return why_not = "a part without a finite size has no cells", cells<host>{};
+  if (options.bytes > most) {
+    why_not =
+        std::to_string(options.bytes) + " bytes are too many for cells; they take at most " + std::to_string(most);
+    return cells<host>{};
+  }
+  if (!(facts.radius > 0 && facts.radius < 1e6f && length(facts.center) < 1e6f)) {
+    why_not = "a part without a finite size has no cells";
+    return cells<host>{};
+  }
   try {
     const auto there = part.on(on);
     return cell_tree(on, there.view(), facts, part.tree.primitives.size(), options).make(why_not);

@@ -98,7 +98,10 @@ class host_packets {
     if constexpr (scan::has_interior<PartView>)
       for (std::size_t j = 0; j < Lanes; ++j)
         if (here.within[j] > -infinity && parts_[k].interior.inside(here[j])) {
-          if (here.within[j] >= 0) best[j].offer({0, k, none}), all.within[j] = 0;
+          if (here.within[j] >= 0) {
+            best[j].offer({0, k, none});
+            all.within[j] = 0;
+          }
           here.within[j] = -infinity;
         }
     here.walk(parts_[k].tree, lead, pending_.data());
@@ -133,7 +136,10 @@ class host_groups {
               real d_max)
       : packets_(packets), walk_(parts, places), d_max_(d_max) {}
 
-  void add(vec3 p, std::uint32_t number) { points_.push_back({p, number}), box_.add(p); }
+  void add(vec3 p, std::uint32_t number) {
+    points_.push_back({p, number});
+    box_.add(p);
+  }
 
   /// Finds what is nearest to each point that was added, and calls `take(number, found)`.
   template <class Take>
@@ -147,7 +153,8 @@ class host_groups {
     } else {
       for (const auto& p : points_) take(p.number, found{});
     }
-    points_.clear(), box_ = {};
+    points_.clear();
+    box_ = {};
   }
 
  private:
@@ -172,7 +179,8 @@ class host_groups {
         take(points_[begin + j].number,
              near.part[j] == none ? found{} : found{near.within[j], near.part[j], near.primitive[j]});
     } else if (count > few) {
-      groups(begin, count / 2, take), groups(begin + count / 2, count - count / 2, take);
+      groups(begin, count / 2, take);
+      groups(begin + count / 2, count - count / 2, take);
     } else {
       found best[few];
       with_vectors([&] { packets_.ask(count, [&](std::size_t j) { return points_[begin + j].at; }, best); });
@@ -183,7 +191,8 @@ class host_groups {
   void put_in_order() {
     if (points_.size() <= most) return;
     const cloud_tree::morton_grid grid(box_.lower, box_.upper);
-    codes_.resize(points_.size()), sorted_.resize(points_.size());
+    codes_.resize(points_.size());
+    sorted_.resize(points_.size());
     with_vectors([&] {
       for (std::size_t i = 0; i < codes_.size(); ++i) codes_[i] = {grid(points_[i].at), std::uint32_t(i)};
     });

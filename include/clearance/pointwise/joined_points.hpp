@@ -22,7 +22,8 @@ void place_entries(const std::vector<T>& piece, const piece_place& place, std::v
     auto to = whole.begin() + std::ptrdiff_t(row * all);
     for (std::size_t c = 0; c < place.first.size(); ++c) {
       std::copy_n(from, place.count[c], to + std::ptrdiff_t(place.first[c]));
-      from += std::ptrdiff_t(place.count[c]), to += std::ptrdiff_t(place.whole[c]);
+      from += std::ptrdiff_t(place.count[c]);
+      to += std::ptrdiff_t(place.whole[c]);
     }
   }
 }
@@ -35,8 +36,10 @@ class joined_points {
 
   void add(const typename Q::result& piece, const piece_place& place) {
     place_entries(piece.distance, place, all_.distance);
-    if (!piece.part.empty())
-      place_entries(piece.part, place, all_.part), place_entries(piece.primitive, place, all_.primitive);
+    if (!piece.part.empty()) {
+      place_entries(piece.part, place, all_.part);
+      place_entries(piece.primitive, place, all_.primitive);
+    }
     all_.counts.add(piece.counts);
     all_.certain.widen(piece.certain);
   }

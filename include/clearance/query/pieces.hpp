@@ -69,9 +69,11 @@ class piece_numbers {
   /// Throws std::invalid_argument if there are too many points.
   template <class Clouds>
   void count(const Clouds& clouds) {
-    whole_.clear(), total_ = 0;
+    whole_.clear();
+    total_ = 0;
     for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
-      whole_.push_back(std::uint32_t(source.size())), total_ += source.size();
+      whole_.push_back(std::uint32_t(source.size()));
+      total_ += source.size();
     });
     if (total_ >= ~std::uint32_t(0)) throw std::invalid_argument("clearance: more than 2^32 - 2 points in one call");
   }
@@ -81,9 +83,11 @@ class piece_numbers {
   /// The piece of each cloud from `begin(cloud)` to `end(cloud)`; valid until the next call.
   template <class Clouds, class Begin, class End>
   piece_place place(const Clouds& clouds, const Begin& begin, const End& end) {
-    first_.clear(), count_.clear();
+    first_.clear();
+    count_.clear();
     for_each_cloud(clouds, [&](const auto& source, const Eigen::Isometry3d&) {
-      first_.push_back(std::uint32_t(begin(source))), count_.push_back(std::uint32_t(end(source)) - first_.back());
+      first_.push_back(std::uint32_t(begin(source)));
+      count_.push_back(std::uint32_t(end(source)) - first_.back());
     });
     return {first_, count_, whole_};
   }

@@ -70,7 +70,8 @@ void pack(std::vector<std::byte>& bytes, const T& value) {
   } else if constexpr (requires(T t) { t.data(), t.resize(0); }) {
     static_assert(std::is_trivially_copyable_v<typename T::value_type>);
     const std::size_t size = value.size();
-    append(&size, sizeof size), append(value.data(), size * sizeof(typename T::value_type));
+    append(&size, sizeof size);
+    append(value.data(), size * sizeof(typename T::value_type));
   } else {
     std::apply([&](const auto&... each) { (pack(bytes, each), ...); }, members_of(value));
   }
@@ -91,7 +92,8 @@ void unpack(std::span<const std::byte>& from, T& value) {
     take(&size, sizeof size);
     if (size > from.size() / sizeof(typename T::value_type))
       throw std::runtime_error("clearance: another process sent too few bytes");
-    value.resize(size), take(value.data(), size * sizeof(typename T::value_type));
+    value.resize(size);
+    take(value.data(), size * sizeof(typename T::value_type));
   } else {
     std::apply([&](auto&... each) { (unpack(from, each), ...); }, members_of(value));
   }

@@ -58,7 +58,10 @@ inline void conclude(certain_distance_result& r) {
     const uncertainty_shares& s = part.shares;
     const double its = double(part.to_ball) - s.gap - s.rounding - (s.joints + s.delay);
     part.lower = its > 0 && r.anywhere == 0 ? rounded_down(its) : 0;
-    if (its < lower) lower = its, r.certain = part;
+    if (its < lower) {
+      lower = its;
+      r.certain = part;
+    }
   }
   if (r.nominal.part == none) return;  // nothing is known
   const bool inside = (r.any_radius ? r.state : r.nominal.state) == state::collision;
@@ -82,10 +85,15 @@ class joined_certain {
     for (certain_pair& part : piece.parts) put(part);
     const of_pieces nominal(piece.nominal);
     if (!any_) {
-      all_ = std::move(piece), nominal_ = nominal, any_ = true;
+      all_ = std::move(piece);
+      nominal_ = nominal;
+      any_ = true;
       return;
     }
-    if (nearer(nominal.all, nominal_.all)) all_.state = piece.state, all_.upper = piece.upper;
+    if (nearer(nominal.all, nominal_.all)) {
+      all_.state = piece.state;
+      all_.upper = piece.upper;
+    }
     nominal_.add(nominal);
     all_.anywhere += piece.anywhere;
     for (std::size_t k = 0; k < piece.parts.size(); ++k) {
@@ -159,7 +167,8 @@ struct read_pair {
     const sample s = source[least.point];
     const vec3 p = s.position;
     const radius_shares shares = shares_of(source, least.point, p);
-    pairs[i].shares = shares, pairs[i].bounded = s.valid();
+    pairs[i].shares = shares;
+    pairs[i].bounded = s.valid();
     if (i >= part_count) return;
     const auto k = std::uint32_t(i);
     const vec3 q = places[k].part_from_cloud(p - origin);
@@ -199,9 +208,10 @@ struct certain_distance {
     if (!parts.empty() && parts.size() != count)
       throw std::invalid_argument("clearance: there are " + std::to_string(count) + " parts, but " +
                                   std::to_string(parts.size()) + " radii of parts");
-    for (const part_radius& r : parts)
-      detail::check_uncertain(r.joints, "a part's radius by its joints"),
-          detail::check_uncertain(r.delay, "a part's radius by a delay");
+    for (const part_radius& r : parts) {
+      detail::check_uncertain(r.joints, "a part's radius by its joints");
+      detail::check_uncertain(r.delay, "a part's radius by a delay");
+    }
   }
 };
 
@@ -252,7 +262,10 @@ class certain_distance::engine {
     return r;
   }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
-  void forget() { nominal_.forget(), search_.forget(); }
+  void forget() {
+    nominal_.forget();
+    search_.forget();
+  }
 
  private:
   /// Reads the pairs that were found. Is there an uncertain cloud?

@@ -69,7 +69,9 @@ struct tell_collision {
     if (*word == first_within::nothing) return;
     const auto where = frames::place_of(std::uint32_t(*word >> 31), first, clouds);
     result->state = (*word & first_within::uncertain) != 0 ? state::possible : state::collision;
-    result->cloud = where.cloud, result->point = where.point, result->part = std::uint32_t(*word) & 0x7fffffff;
+    result->cloud = where.cloud;
+    result->point = where.point;
+    result->part = std::uint32_t(*word) & 0x7fffffff;
   }
 };
 
@@ -85,7 +87,10 @@ struct in_collision {
   using can = clearance::can<checking, counting, concluding, skipping, numbering, merging, partial>;
   using out = collision_result*;  ///< In memory that the backend writes.
 
-  void check(std::size_t parts) const { frames::check_margins(margins, parts), check_radii(radii, parts); }
+  void check(std::size_t parts) const {
+    frames::check_margins(margins, parts);
+    check_radii(radii, parts);
+  }
 
   template <class Asked>
   out space(const Asked& a) const {

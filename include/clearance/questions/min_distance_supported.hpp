@@ -100,8 +100,10 @@ struct count_support_of_pieces {
     extent box;
     std::uint32_t valid = 0;
     for (std::size_t i = begin; i < end; ++i)
-      if (const sample s = each.source[i]; s.valid())
-        box.add(s.position), at[valid++] = each.world_from_cloud(s.position);
+      if (const sample s = each.source[i]; s.valid()) {
+        box.add(s.position);
+        at[valid++] = each.world_from_cloud(s.position);
+      }
     if (valid == 0 || !(nearest(box, each.all.center) <= each.all.radius)) return;
     for (std::uint32_t c = 0; c < each.candidates; ++c) {
       const ball& near = each.near[c];
@@ -245,7 +247,8 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
     std::vector<double> all_within;
     for (const position& p : at) {
       const place_around its = around(p, options.radius, frame.world_from_cloud);
-      balls.push_back(its.near), all_within.push_back(its.all_within);
+      balls.push_back(its.near);
+      all_within.push_back(its.all_within);
     }
     const auto [near] = memory.put(balls);
     const count_support<S> each{source,
@@ -325,11 +328,13 @@ double certain_of_confirmed(Passes& passes, std::span<const Eigen::Isometry3d> p
 inline void bracket(supported_distance& r, double least, const distance_certainty& certain, real tolerance,
                     bool inside) {
   min_distance_result bracketed;
-  bracketed.distance = r.distance, bracketed.part = r.part;
+  bracketed.distance = r.distance;
+  bracketed.part = r.part;
   frames::bracket(bracketed, least, tolerance, inside, certain.error);
   bracketed.dropped[int(drop_reason::too_close)] = r.counts.dropped[int(drop_reason::too_close)];
   frames::allow_for_too_close(bracketed);
-  r.state = bracketed.state, r.lower = bracketed.lower;
+  r.state = bracketed.state;
+  r.lower = bracketed.lower;
 }
 
 /// Clouds must be readable where the question runs.
@@ -344,7 +349,10 @@ supported_distance least_supported(Passes& passes, known_nearest& known, std::sp
     const auto [points, all] = nearest_points(near);
     r.counts = near.counts;
     if (!points.empty() && r.counts.valid < options.min_points) {  // so many are nowhere
-      r.state = state::possible, r.distance = infinity, r.isolated = r.counts.valid, r.nearest_isolated = points[0];
+      r.state = state::possible;
+      r.distance = infinity;
+      r.isolated = r.counts.valid;
+      r.nearest_isolated = points[0];
       return r;
     }
     const auto some = std::span(points).subspan(asked);
@@ -353,7 +361,10 @@ supported_distance least_supported(Passes& passes, known_nearest& known, std::sp
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (support[i] < options.min_points || (r.point != none && some[i].distance != r.distance)) continue;
       if (r.point == none) {
-        r.distance = some[i].distance, r.cloud = some[i].cloud, r.point = some[i].point, r.part = some[i].part,
+        r.distance = some[i].distance;
+        r.cloud = some[i].cloud;
+        r.point = some[i].point;
+        r.part = some[i].part;
         r.primitive = some[i].primitive;
         r.isolated = asked + i;
       }
@@ -373,7 +384,10 @@ supported_distance least_supported(Passes& passes, known_nearest& known, std::sp
       return r;
     }
     if (ends) {
-      if (asked > 0) r.state = state::possible, r.distance = all ? infinity : not_a_number;
+      if (asked > 0) {
+        r.state = state::possible;
+        r.distance = all ? infinity : not_a_number;
+      }
       return r;
     }
   }

@@ -59,8 +59,12 @@ class least_distances {
   real bound() const { return heap_.size() < k_ ? bound_ : heap_.front(); }
   void add(real distance) {
     if (!(distance <= bound())) return;
-    heap_.push_back(distance), std::push_heap(heap_.begin(), heap_.end());
-    if (heap_.size() > k_) std::pop_heap(heap_.begin(), heap_.end()), heap_.pop_back();
+    heap_.push_back(distance);
+    std::push_heap(heap_.begin(), heap_.end());
+    if (heap_.size() > k_) {
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.pop_back();
+    }
   }
 
  private:
@@ -320,8 +324,10 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
   const std::size_t parts = passes.model.size(), enough = few_pairs<std::remove_cvref_t<decltype(on)>>(k, parts);
   std::vector<nearest_window> windows;
   std::vector<std::uint32_t> bounds, before(parts);
-  for (const real bound : first)
-    bounds.push_back(ordered(bound)), windows.push_back({.wanted = k, .bound = bounds.back()});
+  for (const real bound : first) {
+    bounds.push_back(ordered(bound));
+    windows.push_back({.wanted = k, .bound = bounds.back()});
+  }
   for (int pass = 0; pass < nearest_bins::passes; ++pass) {
     const int shift = nearest_bins::shift_of(pass);
     passes.memory.begin();

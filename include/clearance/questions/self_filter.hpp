@@ -136,7 +136,10 @@ inline bool set_paddings(std::span<const double> padding, std::span<const part_f
     const double its = padding[padding.size() == 1 ? 0 : k];
     reaches[parts + k] = frames::is_within(its, facts[k], error);
     reaches[k] = frames::may_be_within(its, facts[k], error);
-    if (!(reaches[k] < infinity)) all_uncertain = true, reaches[k] = reaches[parts + k];
+    if (!(reaches[k] < infinity)) {
+      all_uncertain = true;
+      reaches[k] = reaches[parts + k];
+    }
   }
   return all_uncertain;
 }
@@ -157,7 +160,8 @@ class joined_labels {
   void add(const self_filter_result& piece, const piece_place& place) {
     pointwise::place_entries(piece.labels, place, all_.labels);
     all_.counts.points.add(piece.counts.points);
-    all_.counts.own += piece.counts.own, all_.counts.uncertain += piece.counts.uncertain;
+    all_.counts.own += piece.counts.own;
+    all_.counts.uncertain += piece.counts.uncertain;
     all_.offsets = {0};
     for (const std::uint32_t size : place.whole) all_.offsets.push_back(all_.offsets.back() + size);
   }

@@ -85,7 +85,8 @@ inline void join(std::span<const camera_finding> cameras, real farthest, std::sp
   r.all = cameras[0].all;
   for (const camera_finding& other : cameras.subspan(1)) {
     const min_distance_result& more = other.all;
-    r.all.seen += more.seen, r.all.valid += more.valid;
+    r.all.seen += more.seen;
+    r.all.valid += more.valid;
     for (int i = 0; i < drop_reasons; ++i) r.all.dropped[i] += more.dropped[i];
   }
   // A pixel without a direction shows and hides nothing. If no other is there, nothing is known.
@@ -106,9 +107,13 @@ inline void join(std::span<const camera_finding> cameras, real farthest, std::sp
           distance = std::max(distance, std::min<double>(i.nearest[k].distance, std::max(i.from_edge[k], 0.0)));
           at_least = std::max(at_least, std::min({i.lower[k], i.own[k], i.from_edge[k]}));
         }
-      if (distance < part.distance) static_cast<part_witness&>(part) = j.nearest[k], part.distance = real(distance);
+      if (distance < part.distance) {
+        static_cast<part_witness&>(part) = j.nearest[k];
+        part.distance = real(distance);
+      }
       its_lower = std::min(its_lower, at_least);
-      shown |= j.shown[k], tells_shown &= j.tells_shown;
+      shown |= j.shown[k];
+      tells_shown &= j.tells_shown;
       if (j.tells_shown) edge = std::max({edge, j.from_edge[k], 0.0});
     }
     if (edges && edge >= 0) part.to_edge = rounded_down(edge);
@@ -121,9 +126,15 @@ inline void join(std::span<const camera_finding> cameras, real farthest, std::sp
   if (blind || least == nullptr) return;
   min_distance_result& all = r.all;
   if (cameras.size() > 1 || all.part == none) {
-    all.cloud = least->cloud, all.point = least->point, all.part = least->part, all.primitive = least->primitive;
-    all.at = least->at, all.nearest = least->nearest, all.normal = least->normal;
-    all.distance = least->distance, all.upper = infinity;
+    all.cloud = least->cloud;
+    all.point = least->point;
+    all.part = least->part;
+    all.primitive = least->primitive;
+    all.at = least->at;
+    all.nearest = least->nearest;
+    all.normal = least->normal;
+    all.distance = least->distance;
+    all.upper = infinity;
   }
   all.lower = lower > 0 ? rounded_down(lower) : 0;
   const bool vague = std::ranges::any_of(cameras, &camera_finding::vague);
@@ -212,7 +223,10 @@ struct unseen {
       throw std::invalid_argument("clearance: half a pixel is " + std::to_string(half_pixel) +
                                   " wide at z = 1, which must be 0 or more and below 0.25");
   }
-  void check(std::size_t parts) const { check(), check_radii(radii, parts); }
+  void check(std::size_t parts) const {
+    check();
+    check_radii(radii, parts);
+  }
 };
 
 namespace detail {
@@ -297,7 +311,9 @@ class unseen::engine {
     back_(read_array{found_, all_, searches}, read_array{found_minima_, minima_, searches * parts},
           read_array{found_nearest_, nearest_, places_ ? used_ * parts : 0});
     result& r = result_;
-    r.all = {}, r.own_shadow = {}, r.parts.clear();
+    r.all = {};
+    r.own_shadow = {};
+    r.parts.clear();
     for (std::size_t number = 0; number < used_; ++number) finish_camera(number, r);
     minimum::join(std::span<const camera>(cameras_).first(used_), asked_->room.farthest, asked_->radii, asked_->edges,
                   parts, r);

@@ -21,10 +21,15 @@ struct zone {
   void add(const zone& other) {
     points += other.points;
     if (std::tie(other.nearest, other.nearest_cloud, other.nearest_point) <
-        std::tie(nearest, nearest_cloud, nearest_point))
-      nearest = other.nearest, nearest_cloud = other.nearest_cloud, nearest_point = other.nearest_point;
-    if (std::tie(other.first_cloud, other.first_point) < std::tie(first_cloud, first_point))
-      first_cloud = other.first_cloud, first_point = other.first_point;
+        std::tie(nearest, nearest_cloud, nearest_point)) {
+      nearest = other.nearest;
+      nearest_cloud = other.nearest_cloud;
+      nearest_point = other.nearest_point;
+    }
+    if (std::tie(other.first_cloud, other.first_point) < std::tie(first_cloud, first_point)) {
+      first_cloud = other.first_cloud;
+      first_point = other.first_point;
+    }
   }
 };
 
@@ -141,8 +146,11 @@ struct tell_zone {
     if (w.points != 0) {
       const auto nearest = frames::place_of(key_index(w.nearest), first, clouds),
                  lowest = frames::place_of(w.first, first, clouds);
-      z.nearest = key_distance(w.nearest), z.nearest_cloud = nearest.cloud, z.nearest_point = nearest.point;
-      z.first_cloud = lowest.cloud, z.first_point = lowest.point;
+      z.nearest = key_distance(w.nearest);
+      z.nearest_cloud = nearest.cloud;
+      z.nearest_point = nearest.point;
+      z.first_cloud = lowest.cloud;
+      z.first_point = lowest.point;
     }
     zones[i] = z;
   }

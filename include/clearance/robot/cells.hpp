@@ -127,7 +127,8 @@ struct cells {
   std::size_t bytes() const { return nodes.size() * sizeof(cell_node) + entries.size() * sizeof(cell_entry); }
   cells_view view() const {
     cells_view v = shape;
-    v.nodes = nodes.data(), v.entries = entries.data();
+    v.nodes = nodes.data();
+    v.entries = entries.data();
     return v;
   }
   template <backend Other>

@@ -45,7 +45,8 @@ class near_maps {
                                     std::to_string(k));
     }
     if (fields.size() != parts.size() || std::ranges::any_of(fields, &field<B>::empty)) fields.clear();
-    field_views_ = views_of(fields, on), fields_ = std::move(fields);
+    field_views_ = views_of(fields, on);
+    fields_ = std::move(fields);
   }
   /// A part whose cells are empty has none. Throws std::invalid_argument if some were made for another part.
   void set_cells(std::vector<clearance::cells<B>> cells, std::span<const part_facts> parts, const B& on) {
@@ -55,7 +56,8 @@ class near_maps {
                                     std::to_string(k));
     const bool none = std::ranges::all_of(cells, &clearance::cells<B>::empty);
     cells.resize(none ? 0 : parts.size());
-    cells_views_ = views_of(cells, on), cells_ = std::move(cells);
+    cells_views_ = views_of(cells, on);
+    cells_ = std::move(cells);
   }
 
  private:

@@ -103,7 +103,10 @@ class box_tree {
   /// Calls `visit(item)` for each item whose box is within `reach` of p.
   template <class F>
   void within(const Eigen::Vector3d& p, double reach, F visit) const {
-    nearest(p, reach, [&](std::uint32_t item, double best) { return visit(item), best; });
+    nearest(p, reach, [&](std::uint32_t item, double best) {
+      visit(item);
+      return best;
+    });
   }
 
  private:

@@ -137,7 +137,9 @@ struct basic_winding {
 
   basic_winding_view<T> view() const {
     basic_winding_view<T> v = grid;
-    v.triangles = triangles.data(), v.begin = cells.data(), v.lists = lists.data();
+    v.triangles = triangles.data();
+    v.begin = cells.data();
+    v.lists = lists.data();
     if (enclosed.size() != 0) v.enclosed = reinterpret_cast<const enclosure_head<T>*>(enclosed.data());
     return v;
   }
