@@ -36,7 +36,7 @@ struct solid_sphere {
       const vec3d way = p[k] - center;
       const double reach = best.v[k] + radius;
       d.v[k] = way.dot(way);
-      near |= (reach > 0) & (d.v[k] < reach * reach) ? 1 : 0;
+      near |= ((reach > 0) & (d.v[k] < reach * reach)) ? 1 : 0;
     }
     if (near == 0) return;
     take_roots(d);
@@ -54,7 +54,7 @@ inline bool any_near(std::span<const solid_sphere> some, const vec3d& p, double 
     for (const solid_sphere& s : some) {
       const vec3d way = at - s.center;
       const double r = within + s.radius;
-      any |= (r > 0) & (way.dot(way) < r * r) ? 1 : 0;
+      any |= ((r > 0) & (way.dot(way) < r * r)) ? 1 : 0;
     }
     near = any;
   });

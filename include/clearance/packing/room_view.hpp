@@ -51,13 +51,16 @@ struct room_view {
   CLEARANCE_CALLS_ANYTHING
   template <class F>
   CLEARANCE_HD void for_near(std::uint32_t first, const vec3d& p, double reach, F visit) const {
-    std::uint32_t i = first;
-#if !defined(__CUDA_ARCH__)
-    for (std::uint32_t next; (next = count - i < 32 ? count : i + 32) != i; i = next)
+#if defined(__CUDA_ARCH__)
+    (void)reach;
+    for (std::uint32_t i = first; i < count; ++i) visit(spheres[i]);
+#else
+    for (std::uint32_t i = first, next; i < count; i = next) {  // most are far away, which a host sees for many at once
+      next = count - i < 32 ? count : i + 32;
       if (any_near({spheres + i, next - i}, p, reach))
         for (std::uint32_t k = i; k < next; ++k) reach = visit(spheres[k]);
+    }
 #endif
-    for (; i < count; ++i) reach = visit(spheres[i]);
   }
   CLEARANCE_HD double tree_gap(const vec3d& p, double within, double enough) const {
     return tree.nearest(

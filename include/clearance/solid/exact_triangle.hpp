@@ -76,7 +76,7 @@ class exact_triangle {
     for (int j = 0; j < 8; ++j) {
       const double a = inward_[0].dot(p[j] - v_[0]), b = inward_[1].dot(p[j] - v_[1]), c = inward_[2].dot(p[j] - v_[2]);
       const bool above = (a > 0) & (b > 0) & (c > 0);
-      best.v[j] = above & (height.v[j] < best.v[j]) ? height.v[j] : best.v[j];
+      best.v[j] = (above & (height.v[j] < best.v[j])) ? height.v[j] : best.v[j];
       beyond |= above ? 0 : 1;
     }
     if (well_shaped_ && beyond == 0) return;
@@ -104,7 +104,7 @@ class exact_triangle {
       const vec3d way = p[j] - corner - along.v[j] * edge;
       square.v[j] = way.dot(way);
     }
-    for (int j = 0; j < 8; ++j) least.v[j] = !(side.v[j] > 0) & (square.v[j] < least.v[j]) ? square.v[j] : least.v[j];
+    for (int j = 0; j < 8; ++j) least.v[j] = (!(side.v[j] > 0) & (square.v[j] < least.v[j])) ? square.v[j] : least.v[j];
   }
 
   vec3d v_[3], normal_, inward_[3];
