@@ -21,6 +21,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <chrono>
 #include <functional>
 #include <numeric>
 
@@ -71,10 +72,32 @@ void build(robot_model& made) {
   made.names = std::make_shared<const std::vector<std::string>>(std::move(names));
 }
 
+/// Tells Python's logger "clearance" what is being done, once a second from the first second on. From any thread, one
+/// call at a time; none may hold the interpreter's lock.
+class slow_work {
+ public:
+  void operator()(const std::string& what) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < due_) return;
+    due_ = now + std::chrono::seconds(1);
+    const nb::gil_scoped_acquire alone;
+    try {
+      nb::module_::import_("logging").attr("getLogger")("clearance").attr("info")("%s", what);
+    } catch (nb::python_error& error) {  // a handler of the user's: the robot is made all the same
+      error.discard_as_unraisable("clearance: logging what is being done");
+    }
+  }
+
+ private:
+  std::chrono::steady_clock::time_point due_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+};
+
 void make(robot_model& made, const std::vector<io::body_source>& sources, const model_options& options) {
   io::body_account account;
   io::body_options how{.spheres = options.spheres, .pack = {.count = options.count}};
   if (options.cache) how.cache = io::packing_cache(io::packing_cache::usual_folder());
+  slow_work told;
+  how.doing = [&](const std::string& what) { told(what); };
   made.spheres = options.spheres;
   made.bodies = io::make_bodies(sources, how, account);
   made.notes.insert(made.notes.end(), account.notes.begin(), account.notes.end());

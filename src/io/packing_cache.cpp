@@ -7,7 +7,9 @@
 #include <clearance/packing/pack.hpp>
 #include <clearance/solid/mesh_solid.hpp>
 
+#include <array>
 #include <cstdlib>
+#include <map>
 #include <optional>
 
 namespace clearance::io {
@@ -83,10 +85,33 @@ cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options,
 }
 
 std::vector<cached_packing> pack_cached(std::span<const closed_mesh* const> meshes, const pack_options& options,
-                                        const packing_cache& cache, std::string_view maker, const pack_by& make) {
-  return side_by_side(meshes.size(), options, [&](std::size_t i, const pack_options& own) {
-    return pack_cached(*meshes[i], own, cache, maker, make);
-  });
+                                        const packing_cache& cache, std::string_view maker, const pack_by& make,
+                                        const std::function<void(std::size_t)>& finished) {
+  std::map<std::array<std::uint8_t, 16>, std::size_t> known;
+  std::vector<std::size_t> number;              // by mesh: which of the distinct ones it is
+  std::vector<std::vector<std::size_t>> equal;  // by distinct one: its meshes, the first of which is packed
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const auto [at, is_new] = known.try_emplace(digest_of(*meshes[i]).bytes, equal.size());
+    if (is_new) equal.emplace_back();
+    equal[at->second].push_back(i);
+    number.push_back(at->second);
+  }
+  std::vector<cached_packing> made;
+  try {
+    made = side_by_side(equal.size(), options, [&](std::size_t k, const pack_options& own) {
+      cached_packing one = pack_cached(*meshes[equal[k][0]], own, cache, maker, make);
+      if (finished) finished(equal[k].size());
+      return one;
+    });
+  } catch (const solid_error& error) {
+    throw solid_error(equal[error.index][0], error.what());
+  }
+  std::vector<cached_packing> all;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    all.push_back(made[number[i]]);
+    all.back().made.tolerance = meshes[i]->tolerance;
+  }
+  return all;
 }
 
 }  // namespace clearance::io

@@ -13,6 +13,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -123,14 +124,17 @@ void close(const std::vector<body_source>& sources, std::vector<body>& made, con
 void fill(std::vector<body>& all, const std::vector<std::size_t>& which, const body_options& options,
           body_account& account, std::vector<std::string>& lined) {
   pack_options wanted = options.pack;
-  const std::string what = which.size() == 1 ? all[which[0]].name : std::to_string(which.size()) + " links";
+  std::atomic<std::size_t> links = 0;
   wanted.progress = [&](std::size_t done, std::size_t of) {
-    options.doing("packing " + what + ' ' + std::to_string(done) + '/' + std::to_string(of));
+    const std::string spheres = std::to_string(done) + '/' + std::to_string(of) + " spheres";
+    if (which.size() == 1) return options.doing("packing " + all[which[0]].name + ": " + spheres);
+    options.doing("packing " + std::to_string(which.size()) + " links: " + std::to_string(links) + " done, " + spheres);
   };
   const auto closed = which | std::views::transform([&](std::size_t k) -> const closed_mesh& { return all[k].closed; });
   std::vector<cached_packing> packings;
   try {
-    packings = pack_cached(closed, wanted, options.cache, options.maker, options.make);
+    packings = pack_cached(closed, wanted, options.cache, options.maker, options.make,
+                           [&](std::size_t more) { links += more; });
   } catch (const solid_error& error) {
     refuse_link(all[which[error.index]].name, error);
   }

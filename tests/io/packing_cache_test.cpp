@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 
 namespace packing_cache_test {
@@ -129,6 +130,32 @@ TEST_CASE("several are packed beside one another, and each is kept and found by 
     CHECK(false);
   } catch (const solid_error& error) {
     CHECK(error.index == 2);
+  }
+}
+
+TEST_CASE("equal meshes are packed once, and the first bad one is named by its own number") {
+  const closed_mesh globe = close_mesh(shapes::globe({0, 0, 0}, 0.1));
+  std::vector<closed_mesh> meshes = {box, globe, box, box};
+  std::atomic<int> ran = 0;
+  std::atomic<std::size_t> told = 0;
+  const auto counted = [&](const mesh_solid& s, const pack_options& o) { return ++ran, pack(s, o); };
+  const auto made =
+      io::pack_cached(meshes, {.count = 20}, {}, "host", counted, [&](std::size_t more) { told += more; });
+  CHECK(ran == 2);
+  CHECK(told == 4);
+  REQUIRE(made.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto alone = pack(mesh_solid(meshes[i]), {.count = 20}).spheres;
+    CHECK(std::ranges::equal(made[i].made.spheres, alone, [](const auto& a, const auto& b) {
+      return a.center == b.center && a.radius == b.radius;
+    }));
+  }
+  meshes[3] = close_mesh(shapes::moebius());
+  try {
+    io::pack_cached(meshes, {.count = 20}, {});
+    CHECK(false);
+  } catch (const solid_error& error) {
+    CHECK(error.index == 3);
   }
 }
 

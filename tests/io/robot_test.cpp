@@ -227,18 +227,25 @@ TEST_CASE("joints keep the file's order, whatever else is called joint, and mimi
 
 TEST_CASE("Who waits for spheres is told whose they are: a link by its name, or how many") {
   const triangle_mesh cube = io::tessellate_box({1, 1, 1}).mesh;
-  std::vector<io::body_source> sources{{"hand", &cube}, {"arm", &cube}};
+  const triangle_mesh bar = io::tessellate_box({1, 1, 3}).mesh;
+  std::vector<io::body_source> sources{{"hand", &cube}, {"arm", &bar}};
   for (const auto& [links, what] : {std::pair{2, "2 links"}, std::pair{1, "hand"}}) {
     sources.resize(std::size_t(links));
     std::vector<std::string> said;
     io::body_options how;
-    how.pack.count = 2;
+    how.pack.count = 200;
+    how.pack.threads = 1;  // one after another
     how.doing = [&](const std::string& now) { said.push_back(now); };
     io::body_account account;
     io::make_bodies(sources, how, account);
     CHECK(said.front() == std::string("closing ") + what);
     CHECK(std::ranges::any_of(
-        said, [&](const std::string& s) { return s.starts_with(std::string("packing ") + what + ' '); }));
+        said, [&](const std::string& s) { return s.starts_with(std::string("packing ") + what + ": "); }));
+    if (links == 1) continue;
+    const auto first =
+        std::ranges::find_if(said, [](const auto& s) { return s.starts_with("packing 2 links: 1 done"); });
+    REQUIRE(first != said.end());
+    CHECK(*first == "packing 2 links: 1 done, 200/400 spheres");
   }
 }
 

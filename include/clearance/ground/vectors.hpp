@@ -15,6 +15,10 @@ namespace clearance {
 namespace detail {
 
 template <class F>
+__attribute__((target("avx2"), flatten, noinline)) void compiled_for_wide_vectors(const F& f) {
+  f();
+}
+template <class F>
 __attribute__((target("avx2,fma"), flatten, noinline)) void compiled_for_vectors(const F& f) {
   f();
 }
@@ -29,10 +33,21 @@ void with_vectors(const F& f) {
   __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? detail::compiled_for_vectors(f) : f();
 }
 
+/// The same without fused multiply-add, for arithmetic that the rule of math.hpp does not cover: the compiler has
+/// nothing to fuse with, so the bits do not depend on the processor.
+template <class F>
+void with_wide_vectors(const F& f) {
+  __builtin_cpu_supports("avx2") ? detail::compiled_for_wide_vectors(f) : f();
+}
+
 #else
 
 template <class F>
 void with_vectors(const F& f) {
+  f();
+}
+template <class F>
+void with_wide_vectors(const F& f) {
   f();
 }
 

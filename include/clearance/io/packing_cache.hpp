@@ -65,19 +65,22 @@ using pack_by = std::function<packing(const mesh_solid&, const pack_options&)>;
 cached_packing pack_cached(const closed_mesh& mesh, const pack_options& options, const packing_cache& cache,
                            std::string_view maker = "host", const pack_by& make = {});
 
-/// `pack_cached` of several closed meshes, side by side as by `pack`; each packing is kept as soon as it is done.
-/// Several threads call `make` at once.
+/// The same for several closed meshes, side by side as by `pack`; each is kept as soon as it is done. Equal meshes, as
+/// of a left and a right link, are packed once. Several threads call `make` at once, and `finished` with how many more
+/// meshes are done.
 std::vector<cached_packing> pack_cached(std::span<const closed_mesh* const> meshes, const pack_options& options,
                                         const packing_cache& cache, std::string_view maker = "host",
-                                        const pack_by& make = {});
+                                        const pack_by& make = {},
+                                        const std::function<void(std::size_t)>& finished = {});
 template <std::ranges::random_access_range R>
   requires std::same_as<std::ranges::range_value_t<R>, closed_mesh> &&
            std::is_lvalue_reference_v<std::ranges::range_reference_t<const R>>
 std::vector<cached_packing> pack_cached(const R& meshes, const pack_options& options, const packing_cache& cache,
-                                        std::string_view maker = "host", const pack_by& make = {}) {
+                                        std::string_view maker = "host", const pack_by& make = {},
+                                        const std::function<void(std::size_t)>& finished = {}) {
   std::vector<const closed_mesh*> given;
   for (const closed_mesh& mesh : meshes) given.push_back(&mesh);
-  return pack_cached(std::span<const closed_mesh* const>(given), options, cache, maker, make);
+  return pack_cached(std::span<const closed_mesh* const>(given), options, cache, maker, make, finished);
 }
 
 }  // namespace clearance::io

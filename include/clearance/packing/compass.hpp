@@ -2,7 +2,11 @@
 #pragma once
 // Moves a sphere, step by step, to where a larger one fits.
 
+#include <clearance/ground/vectors.hpp>
+#include <clearance/solid/eight.hpp>
 #include <clearance/solid/vec3d.hpp>
+
+#include <span>
 
 namespace clearance {
 
@@ -19,7 +23,43 @@ struct solid_sphere {
     const double d = ::sqrt(square) - radius;
     return d < best ? d : best;
   }
+  /// The same for eight places side by side, whose distances so far are `best`.
+  void nearer(const eighths& p, eight& best) const {
+    with_wide_vectors([&] { lower(p, best); });
+  }
+
+ private:
+  void lower(const eighths& p, eight& best) const {
+    eight d;
+    std::int64_t near = 0;
+    for (int k = 0; k < 8; ++k) {
+      const vec3d way = p[k] - center;
+      const double reach = best.v[k] + radius;
+      d.v[k] = way.dot(way);
+      near |= ((reach > 0) & (d.v[k] < reach * reach)) ? 1 : 0;
+    }
+    if (near == 0) return;
+    take_roots(d);
+    for (int k = 0; k < 8; ++k) best.v[k] = d.v[k] - radius < best.v[k] ? d.v[k] - radius : best.v[k];
+  }
 };
+
+/// Is any of these spheres nearer to p than `reach`? Most are not, which a host sees for several at a time.
+inline bool any_near(std::span<const solid_sphere> some, const vec3d& p, double reach) {
+  std::int64_t near = 0;
+  with_wide_vectors([&] {
+    const vec3d at = p;
+    const double within = reach;
+    std::int64_t any = 0;
+    for (const solid_sphere& s : some) {
+      const vec3d way = at - s.center;
+      const double r = within + s.radius;
+      any |= ((r > 0) & (way.dot(way) < r * r)) ? 1 : 0;
+    }
+    near = any;
+  });
+  return near != 0;
+}
 
 /// Who tries the directions of a climb: one lane tries all; several lanes share them and agree on the best.
 struct one_lane {

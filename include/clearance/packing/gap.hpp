@@ -20,18 +20,20 @@ class host_steps {
 
   explicit host_steps(const host&) {}
 
-  /// Takes only a few of the largest keys at once, so that little work is wasted. They are kept in a heap. Each call
-  /// adds the new cells, and those chosen last time; after any other change call `forget`.
+  /// Takes only a few of the largest keys at once, so that little work is wasted. Large ones are kept in a heap, the
+  /// rest, whose turn may never come, in a pile. Each call adds the new cells, and those chosen last time; after any
+  /// other change call `forget`.
   std::size_t next(const double* keys, std::size_t n, std::size_t most, std::uint32_t* out, double& least) {
-    const bool afresh = known_ == 0;
     const auto add = [&](std::uint32_t i) {
       if (!(keys[i] > 0)) return;
-      turns_.push_back({keys[i], numbers_++, i});
-      if (!afresh) std::push_heap(turns_.begin(), turns_.end());
+      const turn its{keys[i], numbers_++, i};
+      if (its.key < large_) return pile_.push_back(its);
+      turns_.push_back(its);
+      std::push_heap(turns_.begin(), turns_.end());
     };
     for (const std::uint32_t i : chosen_) add(i);
     for (; known_ < n; ++known_) add(std::uint32_t(known_));
-    if (afresh) std::make_heap(turns_.begin(), turns_.end());
+    refill();
     chosen_.clear();
     const double top = turns_.empty() ? 0 : turns_.front().key;
     least = 0.93 * top;  // a cell that lost little to a new sphere touches it: prefer it to places far from all
@@ -39,19 +41,26 @@ class host_steps {
       chosen_.push_back(turns_.front().cell);
       std::pop_heap(turns_.begin(), turns_.end());
       turns_.pop_back();
+      refill();
     }
     std::copy(chosen_.begin(), chosen_.end(), out);
     return chosen_.size();
   }
   void forget() {
     turns_.clear();
+    pile_.clear();
     chosen_.clear();
     known_ = numbers_ = 0;
+    large_ = double(infinity);
   }
 
   template <class F>
   void each(std::size_t n, const F& f) const {
     tbb::parallel_for(std::size_t(0), n, f);
+  }
+  template <class F>
+  void eighths(std::size_t n, const F& f) const {
+    tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) { f.all_eight(i); });
   }
   template <class F>
   void climbers(std::size_t n, const F& f) const {
@@ -83,8 +92,20 @@ class host_steps {
     friend bool operator<(const turn& a, const turn& b) { return a.key != b.key ? a.key < b.key : a.number > b.number; }
   };
 
-  std::vector<turn> turns_;            // a heap
-  std::vector<std::uint32_t> chosen_;  // chosen last time; not in the heap
+  /// Fills an empty heap from the pile, with the keys from 0.9 of its largest.
+  void refill() {
+    if (!turns_.empty() || pile_.empty()) return;
+    large_ = 0.9 * std::max_element(pile_.begin(), pile_.end())->key;
+    const auto first = std::partition(pile_.begin(), pile_.end(), [&](const turn& each) { return each.key < large_; });
+    turns_.assign(first, pile_.end());
+    pile_.erase(first, pile_.end());
+    std::make_heap(turns_.begin(), turns_.end());
+  }
+
+  std::vector<turn> turns_;            // a heap of all keys from large_
+  std::vector<turn> pile_;             // the rest, in no order
+  std::vector<std::uint32_t> chosen_;  // chosen last time; in neither
+  double large_ = double(infinity);
   std::size_t known_ = 0;
   std::uint32_t numbers_ = 0;
 };
@@ -164,11 +185,33 @@ struct gap_visit {
     gap_cell& c = cells[i];
     const double reach = corner_reach(c.half);
     met[i] = open[i] = closed[i] = 0;
-    const double gap = in.gap(c.middle, double(infinity), least - reach), bound = gap + reach;
-    if (bound <= least) return;
+    const double gap = in.gap(c.middle, double(infinity), least - reach);
+    if (gap + reach <= least) return;
     c.depth = signed_depth(in.solid, c.middle, c.depth, reach);  // also the way to its parent's middle
-    if (c.depth < -reach * (1 + 1e-12)) return;                  // no point of the solid is here
-    if (c.depth >= 0) met[i] = gap;
+    judge(i, gap, reach);
+  }
+  /// All eight of parent `i`, on the host.
+  void all_eight(std::size_t i) const {
+    gap_cell* const c = cells + 8 * i;
+    const double reach = corner_reach(c->half);
+    const eighths at([c](std::uint32_t k) { return c[k].middle; });
+    eight gap = eight::of(double(infinity)), depth;
+    in.gaps(at, gap, least - reach);
+    for (int k = 0; k < 8; ++k) depth.v[k] = gap.v[k] + reach <= least ? 0 : 1;
+    signed_depths(in.solid, at, c->depth, reach, depth);
+    for (std::size_t k = 0; k < 8; ++k) {
+      met[8 * i + k] = open[8 * i + k] = closed[8 * i + k] = 0;
+      if (gap.v[k] + reach <= least) continue;
+      c[k].depth = depth.v[k];
+      judge(8 * i + k, gap.v[k], reach);
+    }
+  }
+
+ private:
+  CLEARANCE_HD void judge(std::size_t i, double gap, double reach) const {
+    const double bound = gap + reach;
+    if (cells[i].depth < -reach * (1 + 1e-12)) return;  // no point of the solid is here
+    if (cells[i].depth >= 0) met[i] = gap;
     // The solid is less than `reach` from the middle, so a small cell's bound is at most twice `reach` too high.
     (bound <= target || 4 * reach <= slack ? closed : open)[i] = bound;
   }
@@ -258,16 +301,21 @@ gap_report measure_gap(const B& on, Steps& steps, const S& s, const room_view<V>
   std::size_t n = grid.size();
   steps.each(n, detail::gap_roots{grid, cells.reserve(n)});
   double upper = 0;
+  bool roots = true;
   while (n > 0) {  // cells halve until 4 * reach <= slack, which is at least `finest`
     const double slack = std::max(least * tolerance, finest);
-    steps.each(n, detail::gap_visit<V>{.in = in,
-                                       .cells = cells.data(),
-                                       .met = met.reserve(n),
-                                       .open = open.reserve(n),
-                                       .closed = closed.reserve(n),
-                                       .least = least,
-                                       .target = least + slack,
-                                       .slack = slack});
+    const detail::gap_visit<V> visit{.in = in,
+                                     .cells = cells.data(),
+                                     .met = met.reserve(n),
+                                     .open = open.reserve(n),
+                                     .closed = closed.reserve(n),
+                                     .least = least,
+                                     .target = least + slack,
+                                     .slack = slack};
+    if (std::exchange(roots, false))
+      steps.each(n, visit);
+    else
+      steps.eighths(n / 8, visit);
     least = std::max(least, steps.largest(n, detail::value_of{met.data()}));
     upper = std::max(upper, steps.largest(n, detail::value_of{closed.data()}));
     const double enough = std::max(upper, least + std::max(least * tolerance, finest));

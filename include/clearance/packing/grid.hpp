@@ -37,6 +37,24 @@ CLEARANCE_HD double signed_depth(const V& in, const vec3d& p, double known, doub
   return inside ? d : -d;
 }
 
+/// The same for a cube's eighths, all at once on the host: `known` is that of the cube's middle, and `step` the way
+/// there. Asked only where `to` is not 0; it stays 0 elsewhere.
+template <solid_view V>
+void signed_depths(const V& in, const eighths& p, double known, double step, eight& to) {
+  const double free = known < 0 ? -known : known;
+  const double within = free > 0 ? (free + step) * (1 + 1e-12) : double(infinity);
+  const bool one_side = free > step * (1 + 1e-9) && !is_porous(in);
+  eight d;
+  for (int k = 0; k < 8; ++k) d.v[k] = to.v[k] != 0 ? within : -double(infinity);
+  if constexpr (requires { in.distances(p, d); })
+    in.distances(p, d);
+  else
+    for (int k = 0; k < 8; ++k)
+      if (to.v[k] != 0) d.v[k] = in.distance(p[k], within, 0);
+  for (int k = 0; k < 8; ++k)
+    if (to.v[k] != 0) to.v[k] = (one_side ? known > 0 : in.inside(p[k])) ? d.v[k] : -d.v[k];
+}
+
 /// Cubes of one size that cover a box, about `along` of them along its longest side.
 struct cube_grid {
   vec3d low;

@@ -69,6 +69,10 @@ class device_steps {
     on_.for_each(n, f);
   }
   template <class F>
+  void eighths(std::size_t n, F f) const {
+    each(8 * n, f);
+  }
+  template <class F>
   std::size_t select(std::size_t n, F f, std::uint32_t* out) {
     if (n == 0) return 0;
     run([&](void* memory, std::size_t& bytes) {

@@ -66,7 +66,8 @@ void arrange(packing& p, double volume);
 /// machines that do much at once. A round takes all cubes with nearly the largest bound. It climbs from those that are
 /// small against their room, keeps those spheres that conflict with no larger one, and divides the other cubes.
 ///
-/// `Steps` adds what a backend does not offer: each(n, f), where one f takes long; climbers(n, f), which calls f(i,
+/// `Steps` adds what a backend does not offer: each(n, f), where one f takes long; eighths(n, f), which calls f(i) for
+/// 8n numbers, or f.all_eight(i) for n, if i .. i + 7 are the eighths of one cube; climbers(n, f), which calls f(i,
 /// lanes); select(n, f, out), numbers for which f holds, in order; largest(n, f), at least 0; next(keys, n, most, out,
 /// least), at most `most` numbers of cells with nearly the largest keys, positive and at least `least`, none if there
 /// are none; forget(), after a change of other cells' keys; and `cells`, how many may exist before they pile up.
@@ -153,8 +154,8 @@ class packer {
     spheres_.plant(128 + spheres_.size() / 16);
     const rounds::field<view_type> f = field();
     const std::size_t before = spheres_.size();
-    steps_.each(some,
-                rounds::refresh<view_type>{f, some_.data(), cells_.data(), keys_.data(), least, deeds_.reserve(some)});
+    steps_.each(some, rounds::refresh<view_type>{f, some_.data(), some, cells_.data(), keys_.data(), least,
+                                                 deeds_.reserve(some)});
     const rounds::is_deed climbing{deeds_.data(), rounds::deed::climb}, dividing{deeds_.data(), rounds::deed::divide};
     const std::size_t climbers = std::min(most_climbers, steps_.select(some, climbing, these_.reserve(some)));
     if (climbers != 0) {
@@ -173,8 +174,8 @@ class packer {
     const std::size_t divided = steps_.select(some, dividing, these_.data());
     cells_.reserve(alive_ + 8 * divided, alive_);
     keys_.reserve(alive_ + 8 * divided, alive_);
-    steps_.each(8 * divided,
-                rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
+    steps_.eighths(
+        divided, rounds::divide<view_type>{field(), some_.data(), these_.data(), cells_.data(), keys_.data(), alive_});
     alive_ += 8 * divided;
     divided_ = spheres_.size() > before ? 0 : divided_ + divided;
   }

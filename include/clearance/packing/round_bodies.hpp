@@ -179,12 +179,19 @@ template <solid_view V>
 struct refresh {
   field<V> f;
   const std::uint32_t* some;
+  std::size_t count;  ///< Of `some`.
   cell* cells;
   double* keys;
   double least;
   deed* deeds;
   CLEARANCE_HD void operator()(std::size_t i) const {
     cell& c = cells[some[i]];
+#if !defined(__CUDA_ARCH__) && defined(__GNUC__)
+    if (i + 4 < count) {  // cells lie far apart in memory, each in two lines of a cache
+      __builtin_prefetch(cells + some[i + 4]);
+      __builtin_prefetch(&cells[some[i + 4]].seen);
+    }
+#endif
     if (c.seen < f.in.count) {
       c.gap = f.in.count - c.seen <= 256 ? f.in.gap_from(c.seen, c.middle, c.gap) : f.in.gap(c.middle, c.gap);
       c.seen = f.in.count;
@@ -202,16 +209,43 @@ struct divide {
   double* keys;
   std::size_t first;  ///< Where the eighths go.
   CLEARANCE_HD void operator()(std::size_t i) const {
-    const std::uint32_t parent = some[these[i / 8]];
-    const cell& from = cells[parent];
-    cell c = {eighth_middle(from.middle, from.half, std::uint32_t(i % 8)), from.half / 2, 0, 0, f.in.count};
+    const cell& from = cells[some[these[i / 8]]];
+    cell c = eighth_of(from, std::uint32_t(i % 8));
     c.depth = signed_depth(f.in.solid, c.middle, from.depth, c.reach());
     const double bound = c.depth + c.reach();
-    const bool finest = f.rules.finest(from.reach());
     if (bound >= f.rules.smallest) c.gap = f.in.gap(c.middle, f.rules.farthest_gap(bound), -c.reach());
+    keep(i, c);
+  }
+  /// All eight of cube `i`, on the host.
+  void all_eight(std::size_t i) const {
+    const cell& from = cells[some[these[i]]];
+    const eighths at([&from](std::uint32_t k) { return eighth_middle(from.middle, from.half, k); });
+    const double reach = corner_reach(from.half / 2);
+    eight depth = eight::of(1), gap;
+    signed_depths(f.in.solid, at, from.depth, reach, depth);
+    for (int k = 0; k < 8; ++k) {
+      const double bound = depth.v[k] + reach;
+      gap.v[k] = bound >= f.rules.smallest ? f.rules.farthest_gap(bound) : -double(infinity);
+    }
+    f.in.gaps(at, gap, -reach);
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      cell c = eighth_of(from, k);
+      c.depth = depth.v[k];
+      c.gap = gap.v[k];
+      keep(8 * i + k, c);
+    }
+  }
+
+ private:
+  CLEARANCE_HD cell eighth_of(const cell& from, std::uint32_t k) const {
+    return {eighth_middle(from.middle, from.half, k), from.half / 2, 0, 0, f.in.count};
+  }
+  CLEARANCE_HD void keep(std::size_t i, const cell& c) const {
+    const std::uint32_t parent = some[these[i / 8]];
+    const bool finest = f.rules.finest(cells[parent].reach());
     cells[first + i] = c;
     keys[first + i] = finest ? 0 : f.key(c);
-    if (i % 8 == 0) keys[parent] = finest ? -from.bound() : 0;
+    if (i % 8 == 0) keys[parent] = finest ? -cells[parent].bound() : 0;
   }
 };
 

@@ -3,6 +3,7 @@
 // A tree of boxes in double, by which solids find what is nearest, exactly.
 
 #include <clearance/ground/math.hpp>
+#include <clearance/solid/eight.hpp>
 #include <clearance/solid/vec3d.hpp>
 
 #include <Eigen/Geometry>
@@ -33,6 +34,17 @@ struct box_pair {
     }
     return sum;
   }
+  /// That of the nearest of the eighths' middles, or less.
+  double squared(int k, const eighths& p) const {
+    const double at[3] = {p.middle.x, p.middle.y, p.middle.z};
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double below = low[k][i] - at[i], above = at[i] - high[k][i];
+      const double d = (below > above ? below : above) - p.apart * (1 + 1e-9);
+      if (d > 0) sum += d * d;
+    }
+    return sum;
+  }
 };
 
 /// What searches of a box tree read, on host and device.
@@ -44,10 +56,11 @@ struct box_tree_view {
   static constexpr int stack_size = 96;
 
   /// Calls `visit(item, best)` for each item whose box is within `best` of p, near ones first. `visit` returns the new
-  /// best, never above the old. Returns the last best; stops early once that is at most `enough`.
+  /// best, never above the old. Returns the last best; stops early once that is at most `enough`. On the host p may
+  /// also be a cube's eighths: then `best` is the largest of theirs.
   CLEARANCE_CALLS_ANYTHING
-  template <class F>
-  CLEARANCE_HD double nearest(const vec3d& p, double best, F visit, double enough = -double(infinity)) const {
+  template <class P, class F>
+  CLEARANCE_HD double nearest(const P& p, double best, F visit, double enough = -double(infinity)) const {
     if (items == 0) return best;
     struct {
       double distance;
@@ -97,7 +110,7 @@ class box_tree {
 
   template <class F>
   double nearest(const Eigen::Vector3d& p, double best, F visit) const {
-    return view().nearest(p, best, visit);
+    return view().nearest(vec3d(p), best, visit);
   }
 
   /// Calls `visit(item)` for each item whose box is within `reach` of p.

@@ -25,6 +25,13 @@ struct mesh_solid_view {
     return tree.nearest(
         p, within, [this, &p](std::uint32_t i, double best) { return triangles[i].nearer(p, best); }, enough);
   }
+  /// The same for eight places side by side; `within` of each becomes its distance.
+  void distances(const eighths& p, eight& within) const {
+    tree.nearest(p, within.largest_above(0), [this, &p, &within](std::uint32_t i, double) {
+      triangles[i].nearer(p, within);
+      return within.largest_above(0);
+    });
+  }
   CLEARANCE_HD bool inside(const vec3d& p) const { return winding.inside(p.x, p.y, p.z); }
   CLEARANCE_HD bool porous() const { return winding.enclosed != nullptr; }
 
