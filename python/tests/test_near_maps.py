@@ -81,7 +81,7 @@ def test_why_there_is_no_field_is_a_note_and_what_is_wrong_is_refused(rng):
         robot.has_fields = True
 
 
-CELLS = {"bytes": 2_000_000, "reach": 0.5}
+CELLS = {"bytes": 4_000_000, "reach": 0.3}
 
 
 def every_distance(robot, points, **where):
@@ -90,10 +90,12 @@ def every_distance(robot, points, **where):
             for r in [clearance.Query(robot, clearance.Distances(d_max=d_max, which=True))(points, **where)]]
 
 
-def test_every_distance_has_the_same_bits_with_cells_and_with_both_maps(arm, rng):
-    spheres, poses, _ = random_robot(rng)
+def test_every_distance_has_the_same_bits_with_cells_and_with_both_maps(rng):
+    spheres, _, poses = random_robot(rng)
+    corners = np.vstack([np.zeros(3), 0.3 * np.eye(3)]), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    mesh = clearance.Robot.from_meshes({"corner": corners}, model="triangles")
     points = rng.normal(0, 0.8, (3000, 3)).astype("f4")
-    for robot, where in (spheres, {"poses": poses}), (arm, {"joints": [0.3, -0.4, 0.1]}):
+    for robot, where in (spheres, {"poses": poses}), (mesh, {"poses": poses[:1]}):
         celled = robot.with_cells(**CELLS)
         assert celled.has_cells and not celled.has_fields and not robot.has_cells and celled.notes == robot.notes
         for both in celled.with_fields(SMALL), robot.with_fields(SMALL).with_cells(**CELLS), pickle.loads(pickle.dumps(celled)):

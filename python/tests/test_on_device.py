@@ -297,7 +297,7 @@ def test_fields_sampled_on_a_device_change_no_bit(scene):
 
 
 def test_cells_made_on_a_device_change_no_bit(scene):
-    celled = scene.robot.with_cells(4_000_000, 1.0, device=GPU)
+    celled = scene.robot.with_cells(device=GPU)
     assert celled.has_cells
     for question in clearance.Distances(which=True), clearance.Distances(d_max=0.2), clearance.Within(0.2):
         for device in "cpu", GPU:

@@ -85,7 +85,7 @@ void ask_everything(const F& f, const Make& make = {}) {
 template <class Model>
 Model with_near_maps(Model model, bool fields = true, bool cells = true) {
   if (fields) model = clearance::with_fields(clearance::host{}, std::move(model), {1 << 15}).model;
-  if (cells) model = clearance::with_cells(clearance::host{}, std::move(model), {1 << 20, 0.3}).model;
+  if (cells) model = clearance::with_cells(clearance::host{}, std::move(model), {1 << 23, 0.3}).model;
   return model;
 }
 /// A robot, and the same one in all three ways.
