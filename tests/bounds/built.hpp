@@ -29,7 +29,7 @@ struct field_law {
       about<P>::draw(x.data(), middle, size, c), all.push_back(about<P>::make(x.data()));
     const auto part = clearance::make_part(clearance::build<clearance::sphere>(all));
     std::string why_not;
-    its = clearance::detail::sampled_field(clearance::host{.threads = 1}, part, {.bytes = 40960}, why_not);
+    its = clearance::minimum::sampled_field(clearance::host{.threads = 1}, part, {.bytes = 40960}, why_not);
   }
   void draw(std::array<float, numbers>& x, std::size_t, chance& c) const {
     draw_near(x.data(), 3, middle, size * c.power(-6, 9), c);

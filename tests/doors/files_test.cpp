@@ -23,7 +23,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::nume
 }  // namespace
 
 TEST_CASE("a scene whose arrays contradict one another is not drawn") {
-  refusals r;
+  refused_doors r;
   scene right;
   right.bodies.push_back({"box", shapes::cube(1)});
   right.clouds.push_back({.name = "points", .points = {{0, 0, 0}, {1, 0, 0}}, .colours = {{1, 0, 0, 1}, {0, 1, 0, 1}}});
@@ -47,7 +47,7 @@ TEST_CASE("a scene whose arrays contradict one another is not drawn") {
 }
 
 TEST_CASE("bodies, robots and joints that make no sense are refused") {
-  refusals r;
+  refused_doors r;
   const auto mesh = shapes::cube(1);
   const body_source source{"box", &mesh};
   const auto of_body = [&](const char* what, const auto& spoil) {

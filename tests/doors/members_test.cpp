@@ -53,7 +53,7 @@ struct chain_parts {
 }  // namespace
 
 TEST_CASE("a mesh whose members contradict one another is refused where it is used") {
-  refusals r;
+  refused_doors r;
   const auto mesh = two_boxes();
   const auto used = [&](const char* what, const auto& spoil) {
     r.check(what, mesh, [](const auto& m) { close_mesh(m); }, spoil);
@@ -85,7 +85,7 @@ TEST_CASE("a mesh whose members contradict one another is refused where it is us
 }
 
 TEST_CASE("primitives, trees and parts that contradict themselves are refused") {
-  refusals r;
+  refused_doors r;
   const auto built = [](const auto& all) { build<aabb>(all); };
   const auto of_sphere = [&](const char* what, const auto& spoil) {
     r.check(what, one, built, [&](auto& all) { spoil(all[0]); });
@@ -156,7 +156,7 @@ TEST_CASE("primitives, trees and parts that contradict themselves are refused") 
 }
 
 TEST_CASE("a robot's view that was filled in wrongly is refused") {
-  refusals r;
+  refused_doors r;
   const auto part = make_part<sphere>(many);
   const model robot{std::vector{part, part}};
   const std::vector other(2, part_facts{{0, 0, 0}, 0.1f, 0, 0});
@@ -172,7 +172,7 @@ TEST_CASE("a robot's view that was filled in wrongly is refused") {
 }
 
 TEST_CASE("a joint chain that makes no sense is refused") {
-  refusals r;
+  refused_doors r;
   const auto of = [&](const char* what, const auto& spoil) {
     r.check(
         what, chain_parts(), [](const chain_parts& g) { joint_chain<host>(g.links, g.parts, g.values, g.base); },
@@ -198,7 +198,7 @@ TEST_CASE("a joint chain that makes no sense is refused") {
 
 TEST_CASE(
     "options of motions, packings, minima and separations are refused where they are no lengths, times or counts") {
-  refusals r;
+  refused_doors r;
   const auto robot = make_part<sphere>(one);
   const straight_motion way(std::vector{here}, std::vector{here});
   const auto of_motion = [&](const char* what, const auto& spoil) {

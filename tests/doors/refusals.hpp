@@ -9,7 +9,7 @@
 namespace testing {
 
 /// Asks with a member as it should be, and with it wrong: the first must pass, and the second be refused by a sentence.
-class refusals {
+class refused_doors {
  public:
   /// `ask(value)` with a copy of `right` in which `spoil(value)` has put what is wrong.
   template <class T, class Ask, class Spoil>

@@ -47,7 +47,7 @@ struct spoilt {
 }  // namespace
 
 TEST_CASE("a point source whose members contradict one another is refused before a point is read") {
-  refusals r;
+  refused_doors r;
   const auto asked = [&]<class S>(const S& right, const std::vector<spoilt<S>>& all) {
     for (const auto& [what, set] : all) {
       r.check(what, right, [](const S& s) { ask(host{}, robot(), poses, s, min_distance{}); }, set);
@@ -146,7 +146,7 @@ TEST_CASE("a point source whose members contradict one another is refused before
 }
 
 TEST_CASE("a ray table without a ray for each pixel is refused") {
-  refusals r;
+  refused_doors r;
   const std::vector<float> pixels(12, 1.0f);
   const ray_table table{4, 3, std::vector<ray>(12), 0};
   const auto image = [&](const ray_table& t) { t.image(pixels, t.width, t.height); };
@@ -155,7 +155,7 @@ TEST_CASE("a ray table without a ray for each pixel is refused") {
 }
 
 TEST_CASE("options that no frame could mend are refused when the question is prepared") {
-  refusals r;
+  refused_doors r;
   const auto of = [&]<class Q>(const Q& right, const std::vector<spoilt<Q>>& all) {
     for (const auto& [what, set] : all) {
       r.check(what, right, [](const Q& q) { query(host{}, robot(), q); }, set);
