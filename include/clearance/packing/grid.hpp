@@ -2,6 +2,7 @@
 #pragma once
 // The cubes in which packing searches a solid, and how deep in it their middles are.
 
+#include <clearance/solid/eight.hpp>
 #include <clearance/solid/solid.hpp>
 
 namespace clearance {

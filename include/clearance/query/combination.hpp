@@ -5,6 +5,7 @@
 #include <clearance/backends/plain.hpp>
 #include <clearance/concepts.hpp>
 #include <clearance/frames/clouds.hpp>
+#include <clearance/points/masked.hpp>
 #include <clearance/points/uncertain.hpp>
 
 namespace clearance {
