@@ -55,7 +55,7 @@ equipped<model<Part>> with_fields(const B& on, model<Part> robot, const field_op
 template <backend B, class Part>
 equipped<model<Part>> with_cells(const B& on, model<Part> robot, const cell_options& options = {}) {
   static_assert(cored_hierarchy<typename model<Part>::view_type::hierarchy_type>,
-                "cells need a tree in arrays, of primitives with `core_at`, see concepts/tangent.hpp");
+                "cells need a tree in arrays, of primitives with core_at, see concepts/tangent.hpp");
   std::vector<std::string> without(robot.size());
   std::vector<cells<host>> all;
   for (std::size_t k = 0; k < robot.size(); ++k)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: cells need a tree in arrays, of primitives with `core_at`
+// expected-error: cells need a tree in arrays, of primitives with core_at
 #include <clearance/bvh/build.hpp>
 #include <clearance/near_maps.hpp>
 #include <clearance/volume/sphere.hpp>
