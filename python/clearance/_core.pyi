@@ -367,7 +367,9 @@ class TofNoise:
 
     @property
     def square(self) -> float:
-        """What the deviation grows by for each square metre of squared distance, in metres."""
+        """
+        What the deviation grows by for each square metre of squared distance, in metres.
+        """
 
     @property
     def k(self) -> float:
