@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A statement does one thing: no comma joins two. statements.py   Exit code 1, and a line for each that is new.
+"""A statement does one thing: no comma joins two. statements.py   Exit code 1, and a line for each that does.
 
 It reads what clang-format leaves (`a < b` compares, `a<b>` is a template), so it needs no compiler. Declarations of several
 names, arguments, members' initialisers and the headers of `for` have commas that join no statements.
