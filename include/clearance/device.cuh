@@ -5,6 +5,7 @@
 
 #include <clearance/backends/one_call.cuh>
 #include <clearance/minimum/device_engine.cuh>
+#include <clearance/minimum/warp_walk.cuh>
 #include <clearance/pairwise/device_pairs.cuh>
 #include <clearance/query/on_devices.cuh>
 

@@ -7,7 +7,6 @@
 #include <clearance/frames/clouds.hpp>
 #include <clearance/plan/search_kernels.cuh>
 #include <clearance/points/point_span.hpp>
-#include <clearance/traversal/any_depth.hpp>
 
 namespace clearance::plan {
 
@@ -98,27 +97,6 @@ struct batch_arguments : asked_batch<PartView, Question> {
   std::uint32_t rounds = none;  ///< After so many rounds a block leaves its unfinished pairs.
 };
 
-/// A warp walks one tree for a witness. Afterwards only the lane with the nearest primitive, of equals the lowest, has
-/// any.
-template <hierarchy H>
-struct walk_by_warp {
-  warp_walk<H> walk;
-
-  CLEARANCE_CALLS_ANYTHING
-  template <primitive P>
-  CLEARANCE_HD void operator()(const H& tree, vec3 q, minimum::nearest_primitive<P>& best) const {
-#if defined(__CUDA_ARCH__)
-    real reach = best.reach();
-    if (!(reach < infinity))
-      reach = scan::descend(scan::plain_steps<H>{tree}, q);  // inside a solid: a leaf gives a bound
-    walk(tree, q, reach, best);
-    const real least = from_ordered(scan::least_of(scan::all_lanes, ordered(best.reach())));
-    const bool nearest = best.id != none && best.within == least;
-    if (best.id != scan::least_of(scan::all_lanes, nearest ? best.id : none)) best.id = none;
-#endif
-  }
-};
-
 /// So many lanes place a configuration. A few for each of several parts were slower than a warp.
 CLEARANCE_HD constexpr std::uint32_t placing_lanes(std::uint32_t parts) { return parts == 1 ? 1 : 32; }
 
@@ -188,18 +166,15 @@ __global__ void __launch_bounds__(128) place_configurations(const __grid_constan
 template <class PartView, class Question, class Source>
 __global__ void __launch_bounds__(128) finish_configurations(const __grid_constant__ asked_batch<PartView, Question> a,
                                                              const __grid_constant__ Source source) {
-  constexpr bool balls = ball_source<Source>;  // each lane walks for the ball, and all find the same
-  using walk_type = std::conditional_t<balls, any_depth, walk_by_warp<typename PartView::hierarchy_type>>;
-  using steps = warp_walk<typename PartView::hierarchy_type>;
-  __shared__ typename steps::node_type pending[4][steps::most];
+  using walk_type = minimum::walk_by_warp<typename PartView::hierarchy_type>;
+  __shared__ typename walk_type::memory pending[4];
   const std::uint32_t c = (blockIdx.x * 128 + threadIdx.x) / 32, lane = threadIdx.x % 32;
   if (c >= a.configurations) return;
   const PartView* const parts = a.its_parts(c);
   const configuration_facts& facts = a.facts[c];
   const minimum::shared_bounds bounds{a.all + c, nullptr};
   min_distance_result mine;
-  walk_type walk{};
-  if constexpr (!balls) walk = {{pending[threadIdx.x / 32]}};
+  const walk_type walk(pending[threadIdx.x / 32]);
   const auto of_part = [&](std::uint32_t k) -> minimum::resolve_body<PartView, Source, walk_type> {
     return {.parts = parts + k,
             .places = a.its_places(c) + k,
@@ -220,7 +195,7 @@ __global__ void __launch_bounds__(128) finish_configurations(const __grid_consta
       const std::uint32_t k = first + std::uint32_t(__ffs(int(those))) - 1;
       of_part(k)(1);
       if (mine.part != none) mine.part = k;
-      if (mine.part != none && (!balls || lane == 0)) a.results[c] = mine;
+      if (mine.part != none) a.results[c] = mine;
     }
   }
   __syncwarp();

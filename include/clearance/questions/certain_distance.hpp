@@ -2,12 +2,11 @@
 #pragma once
 // How far is a robot at least from what its sensors see, if places of points and of parts are uncertain?
 
-#include <clearance/backends/apart.hpp>
+#include <clearance/minimum/apart.hpp>
 #include <clearance/minimum/merge.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/questions/min_distance.hpp>
 #include <clearance/scan/interior.hpp>
-#include <clearance/scan/walk_of.hpp>
 
 #include <tuple>
 
@@ -142,12 +141,12 @@ struct uncertain_pair {
   bool bounded = true;  ///< False: the point may be anywhere.
 };
 
-/// Reads a part's pair again, as it was measured. The thread after the last part's reads the shares of the nominal
-/// answer's point.
-template <class PartView, point_source Source, class Traversal>
+/// Reads a part's pair again, as it was measured. The number after the last part's is the nominal answer's: of its
+/// point the shares are read.
+template <class PartView, point_source Source>
 struct read_pair {
   const PartView* parts;
-  const frames::placement* places;
+  backends::few_values<frames::placement, few> places;
   std::uint32_t part_count;
   Source source;
   vec3 origin;
@@ -155,10 +154,10 @@ struct read_pair {
   std::uint32_t cloud;
   const part_minimum* minima;
   const min_distance_result* nominal;
-  Traversal walk;
   uncertain_pair* pairs;
 
-  CLEARANCE_HD void operator()(std::size_t i) const {
+  template <class Traversal>
+  CLEARANCE_HD void operator()(std::size_t i, const Traversal& walk) const {
     if (cloud == 0) pairs[i] = {};
     const part_minimum least =
         i < part_count ? minima[i]
@@ -171,11 +170,13 @@ struct read_pair {
     pairs[i].bounded = s.valid();
     if (i >= part_count) return;
     const auto k = std::uint32_t(i);
-    const vec3 q = places[k].part_from_cloud(p - origin);
+    const frames::placement place = places[k];
+    const vec3 q = place.part_from_cloud(p - origin);
     const real radius = shares.sum(),
                within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(q));
     const auto f = evaluate(parts[k], q, within, walk);  // not far beyond the nearest
-    const contact here = f.at(q, places[k].world_from_part);
+    if (f.nearest.id == none) return;
+    const contact here = f.at(q, place.world_from_part);
     pairs[i].measured = {f.distance,   k,          cloud, least.point, f.nearest.id, world_from_cloud(p),
                          here.nearest, here.normal};
   }
@@ -273,27 +274,24 @@ class certain_distance::engine {
   bool read(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds) {
     const auto parts = std::uint32_t(model_.size());
     errors_.assign(parts, 0);
-    const auto walk = scan::walk_of(on_, model_);
     bool vague = false;
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           static_assert(points_alone<std::invoke_result_t<as_measured, const S&>>());
           vague = vague || vague_source<S>;
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
-          const auto* const places = std::get<0>(memory_.put(frame_.places));
-          backends::for_each_apart(on_, parts + 1,
-                                   minimum::read_pair<PartView, S, std::remove_const_t<decltype(walk)>>{
-                                       .parts = model_.parts,
-                                       .places = places,
-                                       .part_count = parts,
-                                       .source = source,
-                                       .origin = frame_.origin,
-                                       .world_from_cloud = frame_.world_from_cloud,
-                                       .cloud = now.cloud,
-                                       .minima = minima_,
-                                       .nominal = all_,
-                                       .walk = walk,
-                                       .pairs = pairs_});
+          const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
+          minimum::apart<On>::each(on_, model_, parts + 1,
+                                   minimum::read_pair<PartView, S>{.parts = model_.parts,
+                                                                   .places = places,
+                                                                   .part_count = parts,
+                                                                   .source = source,
+                                                                   .origin = frame_.origin,
+                                                                   .world_from_cloud = frame_.world_from_cloud,
+                                                                   .cloud = now.cloud,
+                                                                   .minima = minima_,
+                                                                   .nominal = all_,
+                                                                   .pairs = pairs_});
         });
     return vague;
   }

@@ -2,22 +2,18 @@
 #pragma once
 // Where every part's least distance is, after min_distance_per_part.
 
-#include <clearance/backends/apart.hpp>
 #include <clearance/backends/kept_memory.hpp>
 #include <clearance/ground/borrowed.hpp>
+#include <clearance/minimum/apart.hpp>
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/query/query.hpp>
-#include <clearance/scan/walk_of.hpp>
 
 namespace clearance {
 
 namespace minimum {
 
-/// The places of up to so many parts go with the launch.
-inline constexpr std::uint32_t few = 12;
-
-/// One thread per part, for one cloud.
-template <class PartView, point_source Source, class Traversal>
+/// A walk for each part, for one cloud.
+template <class PartView, point_source Source>
 struct witness_body {
   const PartView* parts;
   backends::few_values<frames::placement, few> places;
@@ -26,10 +22,10 @@ struct witness_body {
   world_transform world_from_cloud;
   std::uint32_t cloud;
   const part_minimum* minima;
-  Traversal walk;
   part_witness* witnesses;
 
-  CLEARANCE_HD void operator()(std::size_t i) const {
+  template <class Traversal>
+  CLEARANCE_HD void operator()(std::size_t i, const Traversal& walk) const {
     const part_minimum least = minima[i];
     if (cloud == 0) witnesses[i] = {};
     if (least.cloud != cloud || least.point >= source.size()) return;
@@ -104,14 +100,18 @@ class part_witnesses::engine {
   template <class Clouds>
   void evaluate_all(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const part_minimum* minima,
                     part_witness* witnesses) {
-    const auto walk = scan::walk_of(on_, model_);
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
           const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
-          backends::for_each_apart(on_, model_.size(),
-                                   minimum::witness_body<PartView, S, std::remove_const_t<decltype(walk)>>{
-                                       model_.parts, places, source, frame_.origin, frame_.world_from_cloud, now.cloud,
-                                       minima, walk, witnesses});
+          minimum::apart<On>::each(on_, model_, model_.size(),
+                                   minimum::witness_body<PartView, S>{.parts = model_.parts,
+                                                                      .places = places,
+                                                                      .source = source,
+                                                                      .origin = frame_.origin,
+                                                                      .world_from_cloud = frame_.world_from_cloud,
+                                                                      .cloud = now.cloud,
+                                                                      .minima = minima,
+                                                                      .witnesses = witnesses});
         });
   }
 
