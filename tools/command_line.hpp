@@ -39,12 +39,16 @@ inline constexpr const char* exit_codes =
 /// A subcommand. Calling it reads the options and runs it; it returns the exit code.
 using subcommand = std::function<int()>;
 
-subcommand add_query(CLI::App& app);
-subcommand add_run(CLI::App& app);
-subcommand add_plan(CLI::App& app);
-subcommand add_pack(CLI::App& app);
-subcommand add_demo(CLI::App& app);
-subcommand add_info(CLI::App& app);
+/// A program has the subcommands that are linked into it: each registers itself, with its place in --help.
+struct listed_subcommand {
+  using adds = subcommand (*)(CLI::App& app);
+  listed_subcommand(int place, adds add) { all().emplace(place, add); }
+
+  static std::map<int, adds>& all() {
+    static std::map<int, adds> listed;
+    return listed;
+  }
+};
 
 /// Numbers between commas, finite unless `infinite` is set; `what` names them, such as "fx,fy,cx,cy".
 std::vector<double> numbers(const std::string& option, const std::string& text, bool infinite = false);

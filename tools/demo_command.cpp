@@ -154,8 +154,6 @@ int run(const demo_settings& settings) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-
 subcommand add_demo(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("demo", "A made-up arm before a made-up table; needs no file");
   auto settings = std::make_shared<demo_settings>();
@@ -165,3 +163,7 @@ subcommand add_demo(CLI::App& app) {
   sub->add_option("--scene", settings->scene, "Write arm, points and witness to this .glb file");
   return [settings] { return run(*settings); };
 }
+
+const listed_subcommand listed_demo(4, add_demo);
+
+}  // namespace

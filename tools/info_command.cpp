@@ -110,8 +110,6 @@ int describe_solids(const std::string& file, const std::vector<std::string>& pac
   return 0;
 }
 
-}  // namespace
-
 subcommand add_info(CLI::App& app) {
   CLI::App* sub = app.add_subcommand(
       "info",
@@ -172,3 +170,7 @@ subcommand add_info(CLI::App& app) {
     return 0;
   };
 }
+
+const listed_subcommand listed_info(5, add_info);
+
+}  // namespace

@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
   app.footer(exit_codes);
 
   std::vector<subcommand> run;
-  for (const auto add : {add_query, add_run, add_plan, add_pack, add_demo, add_info}) run.push_back(add(app));
+  for (const auto& [place, add] : listed_subcommand::all()) run.push_back(add(app));
   std::string threads;
   add_threads(app, threads);
   take_one_value_each(app);

@@ -240,8 +240,6 @@ int run(const pack_settings& asked) {
   return 0;
 }
 
-}  // namespace
-
 subcommand add_pack(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("pack", "Fill a mesh, or the links of a robot, with inner spheres");
   auto asked = std::make_shared<pack_settings>();
@@ -275,3 +273,7 @@ subcommand add_pack(CLI::App& app) {
   sub->add_flag("--json", asked->json, "Print one JSON object");
   return [asked] { return run(*asked); };
 }
+
+const listed_subcommand listed_pack(3, add_pack);
+
+}  // namespace

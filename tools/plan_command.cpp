@@ -124,8 +124,6 @@ int run_plan(const query_options& asked, all_ranks* ranks) {
   return report.code();
 }
 
-}  // namespace
-
 subcommand add_plan(CLI::App& app) {
   CLI::App* sub =
       app.add_subcommand("plan", "The least distance of many configurations, such as those of a planned path");
@@ -135,3 +133,7 @@ subcommand add_plan(CLI::App& app) {
                        : run_plan(asked, nullptr);
   };
 }
+
+const listed_subcommand listed_plan(2, add_plan);
+
+}  // namespace

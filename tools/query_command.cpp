@@ -227,8 +227,6 @@ int run(const query_options& asked, all_ranks* ranks) {
   return exit_code(report);
 }
 
-}  // namespace
-
 subcommand add_query(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("query", "The least distance between a robot and what a sensor saw");
   return [options = add_query_options(*sub, asking::query)] {
@@ -236,3 +234,7 @@ subcommand add_query(CLI::App& app) {
     return asked.shard ? on_all_ranks([&](all_ranks& ranks) { return run(asked, &ranks); }) : run(asked, nullptr);
   };
 }
+
+const listed_subcommand listed_query(0, add_query);
+
+}  // namespace

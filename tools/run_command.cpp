@@ -284,9 +284,11 @@ int run_frames(const query_options& asked) {
   return code;
 }
 
-}  // namespace
-
 subcommand add_run(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("run", "The least distance in every frame of a recording");
   return [options = add_query_options(*sub, asking::run)] { return run_frames(options()); };
 }
+
+const listed_subcommand listed_run(1, add_run);
+
+}  // namespace

@@ -71,30 +71,33 @@ struct asked_about<Q> {
   using type = either_cloud;
 };
 
-/// Registers a question on a backend.
+/// Registers how a question is prepared on a backend.
+template <class Backend, class Interface, template <class, class, class> class Prepared, bool OtherTrees = false>
+void register_on() {
+  constexpr bool device = !std::same_as<Backend, clearance::host>;
+  using question_type = typename Interface::question_type;
+  maker<Interface>::on[device] = [](const std::shared_ptr<const void>& trees, bool other, const question_type& q) {
+    if constexpr (OtherTrees)
+      if (other)
+        return clearance::any::prepare<Interface, Prepared>(
+            Backend{}, std::static_pointer_cast<const other_trees<Backend>>(trees), q);
+    return clearance::any::prepare<Interface, Prepared>(
+        Backend{}, std::static_pointer_cast<const clearance::any::model<Backend>>(trees), q);
+  };
+}
+
 template <class Backend, class Q>
 struct asked_on {
   asked_on() {
     using namespace clearance;
     constexpr bool least = std::same_as<Q, min_distance> || std::same_as<Q, min_distance_per_part>;
-    add<any::query<Q, typename asked_about<Q>::type>, any::prepared, least>();
-    if constexpr (std::same_as<Q, min_distance_per_part>) {
-      add<any::timed_query<Q, cloud>, any::timed>();
-      add<any::query<Q, either_cloud>, any::prepared>();  // on the ways of a plan
-    }
+    register_on<Backend, any::query<Q, typename asked_about<Q>::type>, any::prepared, least>();
+    if constexpr (std::same_as<Q, min_distance_per_part>)
+      register_on<Backend, any::timed_query<Q, cloud>, any::timed>();
   }
-
- private:
-  template <class Interface, template <class, class, class> class Prepared, bool OtherTrees = false>
-  static void add() {
-    constexpr bool device = !std::same_as<Backend, clearance::host>;
-    maker<Interface>::on[device] = [](const std::shared_ptr<const void>& trees, bool other, const Q& q) {
-      if constexpr (OtherTrees)
-        if (other)
-          return clearance::any::prepare<Interface, Prepared>(
-              Backend{}, std::static_pointer_cast<const other_trees<Backend>>(trees), q);
-      return clearance::any::prepare<Interface, Prepared>(
-          Backend{}, std::static_pointer_cast<const clearance::any::model<Backend>>(trees), q);
-    };
-  }
+};
+/// min_distance_per_part, as the ways of a plan ask it.
+template <class Backend, class Q>
+struct asked_on_ways {
+  asked_on_ways() { register_on<Backend, clearance::any::query<Q, either_cloud>, clearance::any::prepared>(); }
 };
