@@ -3,6 +3,7 @@
 // The valid points of a cloud, and nothing else, on the host or on a device.
 
 #include <clearance/backends/device.cuh>
+#include <clearance/backends/readback.cuh>
 #include <clearance/compacted.hpp>
 
 #include <thrust/iterator/counting_iterator.h>

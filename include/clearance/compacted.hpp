@@ -2,19 +2,19 @@
 #pragma once
 // The valid points of a cloud, and nothing else. Runs on the host; include compacted.cuh for a device.
 
+#include <clearance/backends/readback.hpp>
 #include <clearance/frames/readable.hpp>
 #include <clearance/query/combination.hpp>
 
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace clearance {
 
 /// A cloud's valid points in their order, in its frame, and their numbers in the cloud.
 struct compacted_points {
-  std::vector<vec3> points;
-  std::vector<std::uint32_t> numbers;
+  arriving<vec3> points;
+  arriving<std::uint32_t> numbers;
 };
 
 namespace detail {
@@ -75,7 +75,10 @@ compacted_points compacted(const On& on, const S& source) {
   frames::cloud_copies<On> copies;
   compacted_async(on, frames::readable_on<On>{on, copies}(source, 0), points.data(), numbers.data(), count.data());
   const std::size_t n = on.copy_out(count.data(), 1)[0];
-  return {on.copy_out(points.data(), n), on.copy_out(numbers.data(), n)};
+  backends::readback<On> back(on);
+  compacted_points all{.points = arriving<vec3>(back.memory()), .numbers = arriving<std::uint32_t>(back.memory())};
+  back(backends::read_array{all.points, points.data(), n}, backends::read_array{all.numbers, numbers.data(), n});
+  return all;
 }
 
 }  // namespace clearance

@@ -61,6 +61,9 @@ class readback<device> {
  public:
   explicit readback(const device& on, std::pmr::memory_resource* = nullptr) : on_(on) {}
 
+  /// For `arriving` lists: the kernel writes into them, and nothing is copied again.
+  static std::pmr::memory_resource* memory() { return kept_pinned(); }
+
   /// Waits for all that was enqueued, and takes every `read_array` and `read_value`. Throws cuda_error.
   template <class... Reads>
   void operator()(const Reads&... reads) {
@@ -92,13 +95,25 @@ class readback<device> {
     using value = typename Read::value_type;
     static_assert(std::is_trivially_copyable_v<value> && alignof(value) <= alignof(memory_unit));
     const std::size_t begin = bytes;
-    const auto put = [&](const void* from, std::size_t its_bytes, const unsigned long long* count, std::size_t each) {
-      list.pieces[list.size++] = {
-          .from = static_cast<const std::byte*>(from), .to = nullptr, .bytes = its_bytes, .count = count, .each = each};
-      bytes += (its_bytes + sizeof(memory_unit) - 1) / sizeof(memory_unit) * sizeof(memory_unit);
+    const auto put = [&](const void* from, std::size_t its_bytes, const unsigned long long* count, std::size_t each,
+                         void* to = nullptr) {
+      list.pieces[list.size++] = {.from = static_cast<const std::byte*>(from),
+                                  .to = static_cast<std::byte*>(to),
+                                  .bytes = its_bytes,
+                                  .count = count,
+                                  .each = each};
+      if (to == nullptr) bytes += (its_bytes + sizeof(memory_unit) - 1) / sizeof(memory_unit) * sizeof(memory_unit);
     };
     if (read.count != nullptr) put(read.count, sizeof *read.count, nullptr, 1);
-    if (const std::size_t n = room_for(read); n != 0) put(read.from, n * sizeof(value), read.count, sizeof(value));
+    if (const std::size_t n = room_for(read); n != 0) {
+      void* to = nullptr;
+      if constexpr (arrives<Read>)
+        if (read.to.get_allocator().resource() == kept_pinned()) {
+          read.to.resize(n);
+          to = read.to.data();
+        }
+      put(read.from, n * sizeof(value), read.count, sizeof(value), to);
+    }
     return begin;
   }
 
@@ -110,13 +125,16 @@ class readback<device> {
       number_ = 0;
     }
     std::byte* to = bytes_of_box() + most_blocks * sizeof(std::uint32_t);
+    std::size_t all = 0;
     for (std::uint32_t k = 0; k < list.size; ++k) {
+      all += list.pieces[k].bytes;
+      if (list.pieces[k].to != nullptr) continue;  // it goes where it stays
       list.pieces[k].to = to;
       to += (list.pieces[k].bytes + sizeof(memory_unit) - 1) / sizeof(memory_unit) * sizeof(memory_unit);
     }
     list.number = ++number_;
     list.done = words();
-    const auto blocks = unsigned(std::clamp<std::size_t>(bytes / of_block, 1, most_blocks));
+    const auto blocks = unsigned(std::clamp<std::size_t>(all / of_block, 1, most_blocks));
     on_.launch_early(readback_kernel<read_list>, blocks, 256, 0, list);
     for (unsigned b = 0; b < blocks; ++b) watch(on_, words()[b], number_);
   }
@@ -132,6 +150,11 @@ class readback<device> {
           std::min<unsigned long long>(n, *reinterpret_cast<const unsigned long long*>(bytes_of_box() + place)));
       place += sizeof(memory_unit);
     }
+    if constexpr (arrives<Read>)
+      if (n <= room && read.to.get_allocator().resource() == kept_pinned()) {
+        read.to.resize(n);
+        return 0;
+      }
     if (n == 0) {
       read.take(nullptr, 0);
     } else if (n <= room) {

@@ -3,6 +3,7 @@
 // Brings what a backend wrote to the host, all of it at once. readback.cuh has a device's.
 
 #include <clearance/backends/host.hpp>
+#include <clearance/ground/arriving.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -13,19 +14,25 @@ namespace clearance::backends {
 
 /// An array that a backend wrote, and the vector that takes it. `count`, which lies where the array does, may say that
 /// fewer than `size` values were written.
-template <class T>
+template <class Vector>
 struct read_array {
-  using value_type = T;
+  using value_type = typename Vector::value_type;
 
-  std::vector<T>& to;
-  const T* from;
+  Vector& to;
+  const value_type* from;
   std::size_t size;
   const unsigned long long* count = nullptr;
 
-  void take(const T* values, std::size_t n) const { to.assign(values, values + n); }
+  void take(const value_type* values, std::size_t n) const { to.assign(values, values + n); }
 };
+template <class Vector, class T>
+read_array(Vector&, T*, std::size_t, const unsigned long long* = nullptr) -> read_array<Vector>;
+
+/// Is it read into an `arriving` list?
+template <class Read>
+inline constexpr bool arrives = false;
 template <class T>
-read_array(std::vector<T>&, const T*, std::size_t, const unsigned long long* = nullptr) -> read_array<T>;
+inline constexpr bool arrives<read_array<arriving<T>>> = true;
 
 /// One value that a backend wrote, and where it goes.
 template <class T>
@@ -50,6 +57,9 @@ class readback {
  public:
   template <class... Memory>
   explicit readback(const On& on, Memory...) : on_(on) {}
+
+  /// For `arriving` lists.
+  static std::pmr::memory_resource* memory() { return std::pmr::new_delete_resource(); }
 
   /// Waits for all that was enqueued, and takes every `read_array` and `read_value`.
   template <class... Reads>

@@ -36,7 +36,7 @@ class engine {
   const typename Q::result& finish() {
     if constexpr (Q::per_part)
       back_(backends::read_value<min_distance_result>{result_.all, there_},
-            backends::read_array<part_minimum>{result_.parts, minima_, parts_});
+            backends::read_array{result_.parts, minima_, parts_});
     else
       back_(backends::read_value<min_distance_result>{result_, there_});
     return result_;

@@ -38,6 +38,8 @@ struct asked {
   auto put(const Data&... data) const {
     return memory.put(data...);
   }
+  /// Where `arriving` lists of a result take their memory.
+  std::pmr::memory_resource* arrivals() const { return back.memory(); }
   /// Waits, and takes what the backend wrote, all at once: each of `reads` is a `read_array` or a `read_value`.
   template <class... Reads>
   void bring(const Reads&... reads) const {
@@ -47,7 +49,7 @@ struct asked {
   template <class T>
   std::vector<T> copy_out(const T* data, std::size_t n) const {
     std::vector<T> values;
-    back(backends::read_array<T>{values, data, n});
+    back(backends::read_array{values, data, n});
     return values;
   }
 };

@@ -51,6 +51,7 @@ class engine<device, PartView, Q> {
     check_stack<near_first>(model.depth, model.width);
     if (Q::each_part) asked_.robots = std::max(std::uint32_t(model.size()), 1u);
     asked_.part_count = std::uint32_t(model.size()) / asked_.robots;
+    Q::results(result_) = std::remove_reference_t<decltype(Q::results(result_))>(back_.memory());
   }
   engine(const engine&) = delete;
 
@@ -103,11 +104,12 @@ class engine<device, PartView, Q> {
   /// Waits for the frame that was begun. Throws std::invalid_argument if a pose is not rigid.
   typename Q::result& finish() {
     auto& results = Q::results(result_);
-    results.clear();
     point_counts points;
-    if (asked_.configurations != 0) {
+    if (asked_.configurations == 0) {
+      results.clear();
+    } else {
       counts found;
-      back_(backends::read_array<result_type>{results, asked_.results, asked_.configurations},
+      back_(backends::read_array{results, asked_.results, asked_.configurations},
             backends::read_value<counts>{found, counts_});
       if (found.lost != 0)
         named([&] {

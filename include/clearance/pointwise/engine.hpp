@@ -73,7 +73,10 @@ class engine {
         memory_(on, from...),
         back_(on, from...),
         readable_(on, from...),
-        points_{on, model, from...} {
+        points_{on, model, from...},
+        result_{.distance = arriving<real>(back_.memory()),
+                .part = arriving<std::uint32_t>(back_.memory()),
+                .primitive = arriving<std::uint32_t>(back_.memory())} {
     Q::check_robot(on, model);
   }
 

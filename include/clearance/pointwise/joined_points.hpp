@@ -6,13 +6,12 @@
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
 
 namespace clearance::pointwise {
 
 /// Puts a piece's entries for its points into those of the whole clouds, `rows` times: once for each part, or once.
-template <class T>
-void place_entries(const std::vector<T>& piece, const piece_place& place, std::vector<T>& whole, std::size_t rows = 1) {
+template <class Vector>
+void place_entries(const Vector& piece, const piece_place& place, Vector& whole, std::size_t rows = 1) {
   const auto sum = [](auto of) { return std::accumulate(of.begin(), of.end(), std::size_t(0)); };
   const std::size_t all = sum(place.whole), some = sum(place.count);
   whole.resize(all * rows);

@@ -14,9 +14,9 @@ namespace clearance {
 
 /// Distances of points, in the order of the clouds and their points.
 struct point_distances {
-  std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
-                               ///< where there is no point.
-  std::vector<std::uint32_t> part,
+  arriving<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
+                            ///< where there is no point.
+  arriving<std::uint32_t> part,
       primitive;  ///< If `which` is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
   point_counts counts;
   distance_certainty certain;  ///< Of each distance: another part than the nearest may be nearer in truth.

@@ -10,8 +10,8 @@ namespace clearance {
 
 /// Each part's distance to all points: those of part k are of(k), in the order of the clouds and their points.
 struct part_distances {
-  std::vector<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
-                               ///< where there is no point.
+  arriving<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
+                            ///< where there is no point.
   std::size_t points = 0;
   point_counts counts;
   distance_certainty certain;  ///< Of each distance, by its part.
@@ -112,7 +112,7 @@ struct distances_per_part {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result r;
+    result r{.distance = arriving<real>(a.arrivals())};
     r.points = a.points;
     r.parts = a.parts();
     r.certain = a.certain();

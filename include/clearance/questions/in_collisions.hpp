@@ -15,7 +15,7 @@ namespace clearance {
 /// One state per configuration: that of in_collision for its poses. There is no witness, because it is chance which one
 /// is found first; min_distances gives one.
 struct in_collisions_result {
-  std::vector<state> of;
+  arriving<state> of;
   point_counts counts;  ///< All 0 if there was no configuration.
 
   /// The first configuration that is not certainly farther away than its margins, or of.size().
@@ -60,7 +60,7 @@ struct in_collisions {
     frames::check_margins(margins, parts);
     return {margins.data(), std::uint32_t(margins.size())};
   }
-  static std::vector<state>& results(result& all) { return all.of; }
+  static arriving<state>& results(result& all) { return all.of; }
   static void take_counts(result& all, const point_counts& counts, std::size_t) { all.counts = counts; }
 
   static void merge(result& all, const result& other) {

@@ -17,7 +17,7 @@ namespace clearance {
 /// One result per configuration: that of min_distance for its poses, to the bit, if it is at most d_max. Otherwise the
 /// distance is infinite, there is no witness, and `lower` is what is certain: d_max less gap, tolerance and rounding.
 struct min_distances_result {
-  std::vector<min_distance_result> of;
+  arriving<min_distance_result> of;
 
   /// The first configuration that is not certainly farther away than `margin` metres, or of.size(). Without a valid
   /// point it is the first. Throws std::invalid_argument if the margin is negative or NaN: `lower` is 0 in a collision,
@@ -111,7 +111,7 @@ struct min_distances {
     check_radii(radii, parts);
   }
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
-  static std::vector<min_distance_result>& results(result& all) { return all.of; }
+  static arriving<min_distance_result>& results(result& all) { return all.of; }
   static void take_counts(result&, const point_counts&, std::size_t) {}
   static void so_far(result& all, std::uint64_t unseen) {
     for (min_distance_result& r : all.of) minimum::allow_for_unseen(r, unseen);

@@ -10,7 +10,7 @@ namespace clearance {
 /// The result of min_distance for each part alone, as min_distances gives it. of(c) are those of configuration c, one
 /// per part.
 struct min_distances_per_part_result {
-  std::vector<min_distance_result> all;
+  arriving<min_distance_result> all;
   std::size_t parts = 0;
 
   std::size_t size() const { return parts == 0 ? 0 : all.size() / parts; }
@@ -46,7 +46,7 @@ struct min_distances_per_part {
     check_radii(radii, parts);
   }
   searched checked(std::size_t parts) const { return min_distances{d_max}.checked(parts); }
-  static std::vector<min_distance_result>& results(result& r) { return r.all; }
+  static arriving<min_distance_result>& results(result& r) { return r.all; }
   static void take_counts(result& r, const point_counts&, std::size_t parts) { r.parts = parts; }
   static void so_far(result& r, std::uint64_t unseen) {
     for (min_distance_result& its : r.all) minimum::allow_for_unseen(its, unseen);

@@ -337,7 +337,7 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
     passes.enqueue(poses, clouds, nearest_bins{counts, there, shift},
                    passes.memory.template space<point_counts>(1).data());
     std::vector<std::uint32_t> all;
-    passes.back(backends::read_array<std::uint32_t>{all, counts, parts * nearest_bins::bins});
+    passes.back(backends::read_array{all, counts, parts * nearest_bins::bins});
     std::size_t listed = 0;
     for (std::size_t p = 0; p < parts; ++p) {
       if (windows[p].wanted == 0) {

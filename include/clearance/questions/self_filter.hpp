@@ -105,7 +105,7 @@ struct count_labels {
 /// tolerance or rounding leave that open, it is `uncertain` and not hidden: a point hidden wrongly may be an obstacle,
 /// a point kept wrongly stops a robot. Without a certificate every other point is uncertain.
 struct self_filter_result {
-  std::vector<point_label> labels;   ///< One per point of all clouds, in their order.
+  arriving<point_label> labels;      ///< One per point of all clouds, in their order.
   std::vector<std::size_t> offsets;  ///< The labels of cloud c are offsets[c] to offsets[c + 1] - 1.
   std::vector<std::uint32_t> rest;   ///< The numbers of all valid points that are not hidden, ascending.
   self_filter_counts counts;
@@ -226,7 +226,7 @@ struct self_filter {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result all;
+    result all{.labels = arriving<point_label>(a.arrivals())};
     a.bring(backends::read_array{all.labels, from.labels, a.points}, backends::read_value{all.counts, from.counts});
     all.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
     all.offsets.push_back(a.points);
