@@ -27,10 +27,11 @@ inline const char* to_string(gradient_state s) {
 /// NaN unless `state` is known. With respect to the point the gradient is the witness's normal.
 struct pose_gradient {
   gradient_state state = gradient_state::no_data;
-  vec3 linear = {not_a_number, not_a_number,
-                 not_a_number};  ///< By the velocity of the part at `about`, in metres per metre,
-  vec3 angular = {not_a_number, not_a_number, not_a_number};  ///< and by its angular velocity, in metres per radian.
-  position about = {0, 0, 0};
+  /// What the velocity of the part at `about` does to the distance, in metres per metre.
+  vec3 linear = {not_a_number, not_a_number, not_a_number};
+  /// What the part's angular velocity does to the distance, in metres per radian.
+  vec3 angular = {not_a_number, not_a_number, not_a_number};
+  position about = {0, 0, 0};  ///< The place, in world coordinates, whose velocity is meant.
 
   CLEARANCE_HD explicit operator bool() const { return state == gradient_state::known; }
   /// How fast the distance grows, in metres per second, if the part moves with `velocity` at `about` (m/s) and turns
@@ -75,20 +76,20 @@ inline smooth_minimum smooth_minimum_of(std::span<const part_minimum> minima, do
   if (!(temperature > 0 && temperature < double(infinity)))
     throw std::invalid_argument("clearance: a temperature is " + std::to_string(temperature) +
                                 " m; it must be above 0 and finite");
-  smooth_minimum all{infinity, std::vector<double>(minima.size(), 0.0)};
+  smooth_minimum smooth{infinity, std::vector<double>(minima.size(), 0.0)};
   double least = infinity, sum = 0;
   for (const part_minimum& m : minima) {
     if (!(m.distance > -infinity))
       throw std::invalid_argument("clearance: a part's distance is not a number, or below all numbers");
     least = std::min(least, double(m.distance));
   }
-  if (least == double(infinity)) return all;
+  if (least == double(infinity)) return smooth;
   for (std::size_t k = 0; k < minima.size(); ++k)
-    sum += all.weights[k] = std::exp((least - double(minima[k].distance)) / temperature);
-  for (double& w : all.weights) w /= sum;
-  all.value =
-      least - temperature * std::log(sum);  // the least one's term is exactly 1, so the logarithm is not below 0
-  return all;
+    sum += smooth.weights[k] = std::exp((least - double(minima[k].distance)) / temperature);
+  for (double& w : smooth.weights) w /= sum;
+  // The least one's term is exactly 1, so the logarithm is not below 0.
+  smooth.value = least - temperature * std::log(sum);
+  return smooth;
 }
 
 }  // namespace clearance

@@ -10,9 +10,9 @@ namespace clearance {
 
 /// How far points of a part can move within a time `h` of a moment, before or after it.
 struct part_travel {
-  double speed = 0;        ///< No point is faster at that moment, in metres per the motion's whole time;
-  double growth = 0;       ///< nor, a time h away, than speed + growth h;
-  double most = infinity;  ///< nor ever than this.
+  double speed = 0;        ///< No point is faster at that moment, in metres per the motion's whole time.
+  double growth = 0;       ///< A time h away no point is faster than speed + growth h.
+  double most = infinity;  ///< No point is ever faster than this.
   double rounding = 0;     ///< Metres by which the pose of that moment may differ from the intended motion.
 
   /// Metres, rounded up; 0 for a part that stands still, even if it is infinitely large.

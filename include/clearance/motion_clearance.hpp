@@ -27,11 +27,11 @@ struct motion_clearance_result {
   clearance::state state = clearance::state::no_data;
   real lower = 0;               ///< Metres: at no time is a point nearer. 0 if that is not certain.
   real upper = infinity;        ///< Metres: at `time` some point certainly is this near.
-  double time = not_a_number;   ///< The asked time with the least upper,
-  min_distance_result nearest;  ///< and the answer of min_distance_per_part at that time.
-  double from = 0, to = 1;      ///< The piece of the motion that keeps `lower` down,
-  std::uint32_t part = none;    ///< and the part that does.
-  std::size_t queries = 0;
+  double time = not_a_number;   ///< The asked time with the least `upper`.
+  min_distance_result nearest;  ///< The least distance at `time`.
+  double from = 0, to = 1;      ///< The times between which the bound is lowest, which keep `lower` down.
+  std::uint32_t part = none;    ///< The part that keeps `lower` down.
+  std::size_t queries = 0;      ///< How many times were asked.
   bool settled = false;  ///< `lower` is as good as `tolerance` asks, or as it can be. False: the queries were used up.
 };
 
@@ -63,9 +63,9 @@ inline constexpr double time_error = 0x1p-46;
 inline motion_piece piece_around(const asked_time& a, std::size_t number, double half) {
   motion_piece piece{infinity, none, a.time, half, number};
   for (std::uint32_t k = 0; k < a.lower.size(); ++k) {
-    const double its = a.lower[k] * (1 - 0x1p-50) - a.travels[k].within(half + time_error);
-    if (piece.part == none || its < piece.lower) {
-      piece.lower = its;
+    const double lower = a.lower[k] * (1 - 0x1p-50) - a.travels[k].within(half + time_error);
+    if (piece.part == none || lower < piece.lower) {
+      piece.lower = lower;
       piece.part = k;
     }
   }
@@ -102,7 +102,7 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
   check(options);
   check_radii(options.radii, facts.size());
   const bool vague = any_vague(clouds);
-  motion_clearance_result all;
+  motion_clearance_result result;
   std::vector<asked_time> asked;
   frames::frame_ahead ahead;
   double certain = infinity;  // at the times that were asked
@@ -113,33 +113,33 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     const min_distance_result& r = found.all;
     const double radius = r.part == none ? 0 : radius_of(options.radii, r.part);
     const real upper = radius == 0 ? r.upper : rounded_up(double(r.upper) + radius);
-    if (++all.queries == 1 || upper < all.upper || (upper == all.upper && time < all.time)) {
-      all.upper = upper;
-      all.time = time;
-      all.nearest = r;
+    if (++result.queries == 1 || upper < result.upper || (upper == result.upper && time < result.time)) {
+      result.upper = upper;
+      result.time = time;
+      result.nearest = r;
     }
     if (r.part == none) return false;
     const frames::float_error error = ahead.facts_of(facts, now.poses, clouds).error;
     asked_time a{time, {}, std::move(now.travels)};
     for (std::size_t k = 0; k < facts.size(); ++k) {
-      const part_facts its_facts = widened(facts[k], radius_of(options.radii, k));
-      const double its = frames::certain_distance(found.parts[k].distance, frames::slop(its_facts), error);
-      a.lower.push_back(its > 0 ? its : 0);
+      const part_facts wide = widened(facts[k], radius_of(options.radii, k));
+      const double sure = frames::certain_distance(found.parts[k].distance, frames::slop(wide), error);
+      a.lower.push_back(sure > 0 ? sure : 0);
     }
     certain = std::min(certain, piece_around(a, 0, 0).lower);
     asked.push_back(std::move(a));
     return true;
   };
   std::priority_queue<motion_piece> pieces;
-  if (!ask_at(0.5)) return all;
+  if (!ask_at(0.5)) return result;
   for (motion_piece worst = piece_around(asked[0], 0, 0.5);; worst = pieces.top(), pieces.pop()) {
-    all.lower = rounded_down(worst.lower);
-    all.part = worst.part;
-    all.from = std::max(0.0, worst.time - worst.half);
-    all.to = std::min(1.0, worst.time + worst.half);
-    const bool decided = all.lower > options.margin || !(certain > options.margin);
-    all.settled = certain - worst.lower <= options.tolerance && (options.tolerance < infinity || decided);
-    if (all.settled || all.queries + 2 > options.most_queries) break;
+    result.lower = rounded_down(worst.lower);
+    result.part = worst.part;
+    result.from = std::max(0.0, worst.time - worst.half);
+    result.to = std::min(1.0, worst.time + worst.half);
+    const bool decided = result.lower > options.margin || !(certain > options.margin);
+    result.settled = certain - worst.lower <= options.tolerance && (options.tolerance < infinity || decided);
+    if (result.settled || result.queries + 2 > options.most_queries) break;
     const double third = worst.half / 3;
     const auto put = [&](std::size_t number) {
       motion_piece piece = piece_around(asked[number], number, third);
@@ -152,24 +152,24 @@ motion_clearance_result over_motion(const Ask& ask, std::span<const part_facts> 
     put(worst.asked);  // a third of it has the same middle, so that two questions make three pieces
     for (const double time : {worst.time - 2 * third, worst.time + 2 * third}) {
       if (!ask_at(time)) {
-        all.lower = 0;
-        all.state = state::no_data;
-        return all;
+        result.lower = 0;
+        result.state = state::no_data;
+        return result;
       }
       put(asked.size() - 1);
     }
   }
-  if (all.nearest.dropped[int(drop_reason::too_close)] != 0) all.lower = 0;  // nothing is free then
-  if (vague) all.upper = infinity;
-  all.state = all.upper <= options.margin  ? state::collision
-              : all.lower > options.margin ? state::free
-                                           : state::possible;
-  return all;
+  if (result.nearest.dropped[int(drop_reason::too_close)] != 0) result.lower = 0;  // nothing is free then
+  if (vague) result.upper = infinity;
+  result.state = result.upper <= options.margin  ? state::collision
+                 : result.lower > options.margin ? state::free
+                                                 : state::possible;
+  return result;
 }
 
 }  // namespace detail
 
-/// The same with your prepared query about the same robot, which keeps its memory.
+/// As `motion_clearance(on, robot, ...)`, with your prepared query about the same robot, which keeps its memory.
 template <class On, class PartView, class Robot, motion Motion, class Clouds>
 motion_clearance_result motion_clearance(query<min_distance_per_part, On, PartView>& ask, const Robot& robot,
                                          const Motion& motion, const Clouds& clouds,

@@ -41,7 +41,7 @@ struct part_witness {
 /// How many points a scan has seen, how many of them are valid, and why the others are not.
 struct point_counts {
   std::uint64_t seen = 0, valid = 0;
-  std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
+  std::uint64_t dropped[drop_reasons] = {};  ///< How many points were dropped, by drop_reason; [none] stays 0.
 
   /// Adds those of other points.
   CLEARANCE_HD void add(const point_counts& other) {
@@ -59,15 +59,15 @@ struct min_distance_result {
   clearance::state state = clearance::state::no_data;
   real distance = not_a_number;  ///< Metres; to sphere parts signed, to triangle parts 0 inside.
   real lower = 0, upper = infinity;
-  std::uint32_t cloud = none;      ///< Which cloud of the call,
-  std::uint32_t point = none;      ///< which of its points (index as in the input),
-  std::uint32_t part = none;       ///< which part,
-  std::uint32_t primitive = none;  ///< which of its primitives attains it; of equally near ones the lowest.
-  position at = {0, 0, 0};         ///< The point, in world coordinates,
-  position nearest = {0, 0, 0};    ///< the nearest point of the primitive,
-  vec3 normal = {0, 0, 0};         ///< and the unit vector from robot to point; (0,0,0) if there is none.
+  std::uint32_t cloud = none;      ///< The number of the nearest point's cloud.
+  std::uint32_t point = none;      ///< The number of the nearest point in its cloud.
+  std::uint32_t part = none;       ///< The number of the nearest part.
+  std::uint32_t primitive = none;  ///< The number of the part's nearest primitive; of equally near ones the lowest.
+  position at = {0, 0, 0};         ///< The nearest point, in world coordinates.
+  position nearest = {0, 0, 0};    ///< The primitive's point that is nearest to it, in world coordinates.
+  vec3 normal = {0, 0, 0};         ///< The unit vector from robot to point; (0,0,0) if there is none.
   std::uint64_t seen = 0, valid = 0;
-  std::uint64_t dropped[drop_reasons] = {};  ///< Counts by drop_reason; [none] stays 0.
+  std::uint64_t dropped[drop_reasons] = {};  ///< How many points were dropped, by drop_reason; [none] stays 0.
 };
 static_assert(std::is_trivially_copyable_v<min_distance_result>);
 

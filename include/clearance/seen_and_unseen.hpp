@@ -10,7 +10,7 @@ namespace clearance {
 
 /// As unseen, and as min_distance about the same pixels.
 struct seen_and_unseen_result : unseen_result {
-  min_distance_result seen;  ///< Of all clouds. Pixels labelled `own` are dropped as `masked`.
+  min_distance_result seen;  ///< The least distance to what cameras see. Pixels labelled `own` are dropped as `masked`.
 };
 
 /// Asks `min_distance` and `unseen` about one frame of images, on a device at the same time. Refused: as unseen.

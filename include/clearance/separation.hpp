@@ -28,14 +28,14 @@ std::optional<double> approach_speed(const Witness& w, const Eigen::Vector3d& ve
 /// The terms of the protective separation distance of ISO/TS 15066 (speed and separation monitoring). No term has a
 /// default: measure each or take it from the standard. A missing term is refused.
 struct separation_terms {
-  double human_speed = not_a_number;        ///< v_h, towards the robot, m/s.
-  double robot_speed = not_a_number;        ///< v_r, towards the human, m/s; 0 if it moves away.
-  double reaction_time = not_a_number;      ///< T_r, from the exposure of a frame to the beginning of the stop, s.
-  double stopping_time = not_a_number;      ///< T_s, from there to standstill, s,
-  double stopping_distance = not_a_number;  ///< S_s, how far the robot moves in that time, m.
-  double intrusion = not_a_number;          ///< C, how far a body may reach before it is seen, m.
-  double human_uncertainty = not_a_number;  ///< Z_d, of where the sensors see it, m.
-  double robot_uncertainty = not_a_number;  ///< Z_r, of where the robot is, m.
+  double human_speed = not_a_number;        ///< v_h: the human's speed towards the robot, m/s.
+  double robot_speed = not_a_number;        ///< v_r: the robot's speed towards the human, m/s; 0 if it moves away.
+  double reaction_time = not_a_number;      ///< T_r: from the exposure of a frame to the beginning of the stop, s.
+  double stopping_time = not_a_number;      ///< T_s: from the beginning of the stop to standstill, s.
+  double stopping_distance = not_a_number;  ///< S_s: how far the robot moves in `stopping_time`, m.
+  double intrusion = not_a_number;          ///< C: how far a body may reach before it is seen, m.
+  double human_uncertainty = not_a_number;  ///< Z_d: how wrong the sensors may be about where the human is, m.
+  double robot_uncertainty = not_a_number;  ///< Z_r: how wrong it may be where the robot is, m.
 };
 
 /// S_p = S_h + S_r + S_s + C + Z_d + Z_r in metres, with S_h = v_h (T_r + T_s) and S_r = v_r T_r, speeds being

@@ -50,7 +50,7 @@ class Robot:
 
     @property
     def has_fields(self) -> bool:
-        """Was it made by with_fields, and are they used?"""
+        """Whether the robot was made by with_fields, and its fields are used."""
 
     def with_cells(self, bytes: object | None = 67108864, reach: float = 4.0, device: str = 'cpu') -> Robot:
         """
@@ -59,7 +59,7 @@ class Robot:
 
     @property
     def has_cells(self) -> bool:
-        """Was it made by with_cells, and has a part some?"""
+        """Whether the robot was made by with_cells, and a part has cells."""
 
     @property
     def name(self) -> str: ...
@@ -118,7 +118,7 @@ class Robot:
 
     def link_pose(self, link: str, joints: object | None = None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
-        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.
+        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Arguments are those of poses.
         """
 
     def jacobian(self, joints: object | None, part: object | None, at: object | None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
@@ -185,11 +185,11 @@ class Camera:
 
     @property
     def width(self) -> int:
-        """Of the images, pixels."""
+        """The width of the images, in pixels."""
 
     @property
     def height(self) -> int:
-        """Of the images, pixels."""
+        """The height of the images, in pixels."""
 
     @property
     def intrinsics(self) -> tuple[float, float, float, float] | None:
@@ -207,22 +207,25 @@ class PairDistance:
 
     @property
     def cloud(self) -> int | None:
-        """The point's number as in its cloud."""
+        """The number of the point's cloud."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """The number of the point in its cloud."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the part."""
 
     @property
     def primitive(self) -> int | None:
         """
-        The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+        The nearest primitive of the part; of equally near ones the lowest. ~0u: the point is inside the part's solid.
         """
 
     @property
-    def distance(self) -> float: ...
+    def distance(self) -> float:
+        """Metres, as computed."""
 
     @property
     def link(self) -> str | None:
@@ -422,35 +425,40 @@ class UncertaintyShares:
 
     @property
     def noise(self) -> float:
-        """Of the point."""
+        """What the sensor's noise adds to the point's radius."""
 
     @property
-    def calibration(self) -> float: ...
+    def calibration(self) -> float:
+        """What an inexact pose of the sensor adds to the point's radius."""
 
     @property
-    def time(self) -> float: ...
+    def time(self) -> float:
+        """What an obstacle's motion since the point was seen adds to its radius."""
 
     @property
     def joints(self) -> float:
-        """Of the part."""
+        """What inexact joints add to the part's radius."""
 
     @property
-    def delay(self) -> float: ...
+    def delay(self) -> float:
+        """What the part's motion while the answer is made adds to its radius."""
 
     @property
     def gap(self) -> float:
         """The part's gap and tolerance."""
 
     @property
-    def rounding(self) -> float: ...
+    def rounding(self) -> float:
+        """What arithmetic may have lost."""
 
-    def sum(self) -> float: ...
+    def sum(self) -> float:
+        """All shares together."""
 
     def __repr__(self) -> str: ...
 
 class CertainPair:
     """
-    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+    The pair of a part that is least far apart for certain. distance is what was measured, lower what is left of it. The pair need not be the nearest. Without a valid point the distance is infinite.
     """
 
     @property
@@ -478,10 +486,12 @@ class CertainPair:
     def normal(self) -> tuple[float, float, float]: ...
 
     @property
-    def lower(self) -> float: ...
+    def lower(self) -> float:
+        """Metres that certainly lie between the point and the part."""
 
     @property
-    def shares(self) -> UncertaintyShares: ...
+    def shares(self) -> UncertaintyShares:
+        """What is taken off the distance, by its cause."""
 
     @property
     def to_ball(self) -> float:
@@ -518,7 +528,9 @@ class CertainDistanceResult:
 
     @property
     def anywhere(self) -> int:
-        """So many points may be anywhere: if it is not 0, nothing is free."""
+        """
+        The number of points that may be anywhere: if it is not 0, nothing is free.
+        """
 
     @property
     def any_radius(self) -> bool:
@@ -531,13 +543,14 @@ class PartRadius:
 
     @property
     def joints(self) -> float:
-        """Because joints are not where they say,"""
+        """How far it may be elsewhere because joints are not where they say."""
 
     @property
     def delay(self) -> float:
-        """and because it moves while the answer is made."""
+        """How far it may be elsewhere because it moves while the answer is made."""
 
-    def sum(self) -> float: ...
+    def sum(self) -> float:
+        """Both together."""
 
     def __repr__(self) -> str: ...
 
@@ -572,11 +585,14 @@ class PointDistances:
     @property
     def part(self) -> NDArray[numpy.uint32]:
         """
-        If which is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
+        If which is set, the nearest part of each point, of equally near ones the lowest; ~0u: none.
         """
 
     @property
-    def primitive(self) -> NDArray[numpy.uint32]: ...
+    def primitive(self) -> NDArray[numpy.uint32]:
+        """
+        If which is set, the nearest primitive of that part; ~0u: none, or the point is inside.
+        """
 
     @property
     def counts(self) -> PointCounts: ...
@@ -584,7 +600,7 @@ class PointDistances:
     @property
     def certain(self) -> DistanceCertainty:
         """
-        Of each distance: another part than the nearest may be nearer in truth.
+        What is certain of each distance: the nearest part may be another in truth.
         """
 
     def __repr__(self) -> str: ...
@@ -597,7 +613,7 @@ class Distances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Also which part and primitive is nearest.
+        which: Whether to tell which part and primitive is nearest, too.
         """
 
     @property
@@ -606,7 +622,7 @@ class Distances:
 
     @property
     def which(self) -> bool:
-        """Also which part and primitive is nearest."""
+        """Whether to tell which part and primitive is nearest, too."""
 
     def __repr__(self) -> str: ...
 
@@ -628,20 +644,24 @@ class PartDistances:
         """
 
     @property
-    def points(self) -> int: ...
+    def points(self) -> int:
+        """The number of points of all clouds."""
 
     @property
     def counts(self) -> PointCounts: ...
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each distance, by its part."""
+        """What is certain of each distance, by its part."""
 
     @property
-    def parts(self) -> int: ...
+    def parts(self) -> int:
+        """The number of parts."""
 
     def of(self, part: int) -> NDArray[numpy.float32]:
-        """Those of a part. Raises IndexError if there is no such part."""
+        """
+        The distances of a part to all points. Raises IndexError if there is no such part.
+        """
 
     def __repr__(self) -> str: ...
 
@@ -828,7 +848,7 @@ class SupportedDistance:
     @property
     def state(self) -> State:
         """
-        That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
+        What min_distance says about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
         """
 
     @property
@@ -857,11 +877,11 @@ class SupportedDistance:
 
     @property
     def isolated(self) -> int:
-        """The number of nearer points that are not confirmed,"""
+        """The number of nearer points that are not confirmed."""
 
     @property
     def nearest_isolated(self) -> PairDistance:
-        """and the first of them."""
+        """The nearest of the points that are not confirmed."""
 
     @property
     def counts(self) -> PointCounts: ...
@@ -879,18 +899,18 @@ class MinDistanceSupported:
 
     def __init__(self, min_points: int = 3, radius: float = 0.02, most: int = 4096) -> None:
         """
-        min_points: A point is confirmed by this many points, itself among them,
-        radius: within this many metres.
+        min_points: How many points confirm one, itself among them.
+        radius: Metres within which points confirm one another.
         most: The search ends after this many of the nearest points, each asked once.
         """
 
     @property
     def min_points(self) -> int:
-        """A point is confirmed by this many points, itself among them,"""
+        """How many points confirm one, itself among them."""
 
     @property
     def radius(self) -> float:
-        """within this many metres."""
+        """Metres within which points confirm one another."""
 
     @property
     def most(self) -> int:
@@ -975,7 +995,7 @@ class MinDistancesPerPartResult:
 
     def of(self, c: int) -> NDArray[numpy.void]:
         """
-        Those of a configuration. Raises IndexError if there is no such configuration.
+        The results of a configuration's parts. Raises IndexError if there is no such configuration.
         """
 
     def __repr__(self) -> str: ...
@@ -1039,7 +1059,8 @@ class NearestKResult:
     """
 
     @property
-    def per_part(self) -> int: ...
+    def per_part(self) -> int:
+        """The number of pairs in each part's list."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]: ...
@@ -1049,10 +1070,10 @@ class NearestKResult:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each pair's distance, by its part."""
+        """What is certain of each pair's distance, by its part."""
 
     def of(self, part: int) -> NDArray[numpy.void]:
-        """Those of a part. Raises IndexError if there is no such part."""
+        """The pairs of a part. Raises IndexError if there is no such part."""
 
     def __repr__(self) -> str: ...
 
@@ -1062,11 +1083,13 @@ class PartWitnesses:
     """
 
     def __init__(self, minima: NDArray[numpy.void]) -> None:
-        """minima: As min_distance_per_part gives them."""
+        """
+        minima: Every part's least distance, as min_distance_per_part gives it.
+        """
 
     @property
     def minima(self) -> NDArray[numpy.void]:
-        """As min_distance_per_part gives them."""
+        """Every part's least distance, as min_distance_per_part gives it."""
 
     def __repr__(self) -> str: ...
 
@@ -1086,10 +1109,11 @@ class SelfFilterCounts:
 
     @property
     def own(self) -> int:
-        """Of the valid points."""
+        """How many valid points are certainly the robot's."""
 
     @property
-    def uncertain(self) -> int: ...
+    def uncertain(self) -> int:
+        """How many valid points are perhaps the robot's."""
 
     def __repr__(self) -> str: ...
 
@@ -1100,7 +1124,7 @@ class SelfFilterResult:
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """One per point of all clouds, in their order."""
+        """Whose each point is, in the order of the clouds and their points."""
 
     @property
     def offsets(self) -> NDArray[numpy.uint64]:
@@ -1147,7 +1171,7 @@ class SignedDistances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Also which part and triangle is nearest.
+        which: Whether to tell which part and triangle is nearest, too.
         """
 
     @property
@@ -1156,7 +1180,7 @@ class SignedDistances:
 
     @property
     def which(self) -> bool:
-        """Also which part and triangle is nearest."""
+        """Whether to tell which part and triangle is nearest, too."""
 
     def __repr__(self) -> str: ...
 
@@ -1197,18 +1221,20 @@ class UnseenPart:
 
     @property
     def lower(self) -> float:
-        """At least so far away is all that no camera sees and some camera hides."""
+        """
+        Room that some camera hides and no camera sees is at least so far away.
+        """
 
     @property
     def out_of_view(self) -> float:
         """
-        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
+        The share, 0 to 1, of the ball around the part that no camera shows; nothing is said about it. NaN if a ray image may show the rest.
         """
 
     @property
     def to_edge(self) -> float:
         """
-        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+        If edges are asked for: at least so many metres lie between the ball around the part and all that no image shows. 0: some of the ball is not shown. NaN: there are ray images alone.
         """
 
     @property
@@ -1231,7 +1257,7 @@ class UnseenResult:
     @property
     def own_shadow(self) -> MinDistanceResult:
         """
-        What pixels of the robot's own points (masked) hide, of all cameras together.
+        The least distance to what pixels of the robot's own points (masked) hide from all cameras together.
         """
 
     def __repr__(self) -> str: ...
@@ -1244,10 +1270,10 @@ class Unseen:
     def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
         """
         room: Where hidden room begins and ends.
-        half_pixel: For ray images: half_pixel_of their table.
-        labels: Of all pixels of all clouds, as self_filter gives them, or none.
-        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
-        edges: Also how far every part is from the edge of the view: to_edge.
+        half_pixel: What half_pixel_of says of a ray image's table; 0 without ray images.
+        labels: Whose each pixel of all clouds is, as self_filter gives it; or none.
+        places: Whether to tell of every part, as of the robot, at, nearest and normal.
+        edges: Whether to tell to_edge: how far every part is from the edge of the view.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
@@ -1257,21 +1283,23 @@ class Unseen:
 
     @property
     def half_pixel(self) -> float:
-        """For ray images: half_pixel_of their table."""
+        """What half_pixel_of says of a ray image's table; 0 without ray images."""
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """Of all pixels of all clouds, as self_filter gives them, or none."""
+        """Whose each pixel of all clouds is, as self_filter gives it; or none."""
 
     @property
     def places(self) -> bool:
         """
-        Also where every part is nearest: at, nearest and normal, as the robot always has.
+        Whether to tell of every part, as of the robot, at, nearest and normal.
         """
 
     @property
     def edges(self) -> bool:
-        """Also how far every part is from the edge of the view: to_edge."""
+        """
+        Whether to tell to_edge: how far every part is from the edge of the view.
+        """
 
     @property
     def radii(self) -> tuple[float, ...]:
@@ -1291,18 +1319,19 @@ class WithinResult:
     """
 
     @property
-    def offsets(self) -> NDArray[numpy.uint64]: ...
+    def offsets(self) -> NDArray[numpy.uint64]:
+        """Where each part's pairs begin, and the number of all."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
-        """Distances as computed, in metres."""
+        """The pairs, with distances as computed, in metres."""
 
     @property
     def counts(self) -> PointCounts: ...
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each pair's distance, by its part."""
+        """What is certain of each pair's distance, by its part."""
 
     def __repr__(self) -> str: ...
 
@@ -1332,27 +1361,32 @@ class Zone:
     """
 
     @property
-    def points(self) -> int: ...
+    def points(self) -> int:
+        """How many points are in the zone."""
 
     @property
     def nearest(self) -> float:
         """
-        The least distance of its points, less their radii, as computed. Metres.
+        The least distance of the zone's points, less their radii, as computed. Metres.
         """
 
     @property
     def nearest_cloud(self) -> int | None:
-        """The point at that distance; of equally near ones the lowest."""
+        """The cloud of the nearest point."""
 
     @property
-    def nearest_point(self) -> int | None: ...
+    def nearest_point(self) -> int | None:
+        """
+        The nearest point's number in that cloud; of equally near ones the lowest.
+        """
 
     @property
     def first_cloud(self) -> int | None:
-        """The lowest of its points."""
+        """The lowest cloud that has a point in the zone."""
 
     @property
-    def first_point(self) -> int | None: ...
+    def first_point(self) -> int | None:
+        """The lowest number in that cloud of a point in the zone."""
 
     def __repr__(self) -> str: ...
 
@@ -1360,10 +1394,12 @@ class ZonesResult:
     """What is in the zones of each part."""
 
     @property
-    def per_part(self) -> int: ...
+    def per_part(self) -> int:
+        """The number of zones of each part."""
 
     @property
-    def min_points(self) -> int: ...
+    def min_points(self) -> int:
+        """A zone with fewer points counts as empty (innermost)."""
 
     @property
     def zones(self) -> NDArray[numpy.void]:
@@ -1393,19 +1429,21 @@ class Zones:
 
     def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1, radii: float | ArrayLike = ()) -> None:
         """
-        thresholds: Metres, in ascending order: the same for every part,
-        each_part: or, if this is set, those of each part in turn, equally many.
+        thresholds: Metres, in ascending order: the same for every part, unless each_part is set.
+        each_part: thresholds are those of each part in turn, equally many.
         min_points: A zone with fewer counts as empty (innermost); its points are still reported.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
     def thresholds(self) -> tuple[float, ...]:
-        """Metres, in ascending order: the same for every part,"""
+        """
+        Metres, in ascending order: the same for every part, unless each_part is set.
+        """
 
     @property
     def each_part(self) -> bool:
-        """or, if this is set, those of each part in turn, equally many."""
+        """thresholds are those of each part in turn, equally many."""
 
     @property
     def min_points(self) -> int:
@@ -1505,7 +1543,7 @@ class PointCounts:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Counts by drop_reason; [none] stays 0."""
+        """How many points were dropped, by drop_reason; [none] stays 0."""
 
     def __repr__(self) -> str: ...
 
@@ -1529,31 +1567,33 @@ class MinDistanceResult:
 
     @property
     def cloud(self) -> int | None:
-        """Which cloud of the call,"""
+        """The number of the nearest point's cloud."""
 
     @property
     def point(self) -> int | None:
-        """which of its points (index as in the input),"""
+        """The number of the nearest point in its cloud."""
 
     @property
     def part(self) -> int | None:
-        """which part,"""
+        """The number of the nearest part."""
 
     @property
     def primitive(self) -> int | None:
-        """which of its primitives attains it; of equally near ones the lowest."""
+        """
+        The number of the part's nearest primitive; of equally near ones the lowest.
+        """
 
     @property
     def at(self) -> tuple[float, float, float]:
-        """The point, in world coordinates,"""
+        """The nearest point, in world coordinates."""
 
     @property
     def nearest(self) -> tuple[float, float, float]:
-        """the nearest point of the primitive,"""
+        """The primitive's point that is nearest to it, in world coordinates."""
 
     @property
     def normal(self) -> tuple[float, float, float]:
-        """and the unit vector from robot to point; (0,0,0) if there is none."""
+        """The unit vector from robot to point; (0,0,0) if there is none."""
 
     @property
     def seen(self) -> int: ...
@@ -1563,7 +1603,7 @@ class MinDistanceResult:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Counts by drop_reason; [none] stays 0."""
+        """How many points were dropped, by drop_reason; [none] stays 0."""
 
     @property
     def link(self) -> str | None:
@@ -1637,7 +1677,7 @@ class Query(Generic[Answer]):
 
     def enqueue(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, out: object | None = None, capacity: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> DeviceAnswer:
         """
-        The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
+        Asks on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
         """
 
     @property

@@ -366,7 +366,7 @@ void bind_query(nb::module_& m) {
            nb::arg("out").none() = nb::none(), nb::arg("capacity").none() = nb::none(),
            nb::arg("stream").none() = nb::none(), nb::arg("question").none() = nb::none(),
            nb::arg("ignore_limits") = false, nb::arg("rest") = false,
-           "The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream "
+           "Asks on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream "
            "waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; "
            "None: "
            "the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises "

@@ -581,7 +581,7 @@ void bind_robot(nb::module_& m) {
       .def_prop_ro(
           "has_fields",
           [](const robot_model& r) { return std::visit([](const auto& m) { return !m.fields().empty(); }, *r.trees); },
-          "Was it made by with_fields, and are they used?")
+          "Whether the robot was made by with_fields, and its fields are used.")
       .def(
           "with_cells", &celled_robot, nb::arg("bytes").none() = cell_options{}.bytes,
           nb::arg("reach") = cell_options{}.reach, nb::arg("device") = "cpu",
@@ -591,7 +591,7 @@ void bind_robot(nb::module_& m) {
       .def_prop_ro(
           "has_cells",
           [](const robot_model& r) { return std::visit([](const auto& m) { return !m.cells().empty(); }, *r.trees); },
-          "Was it made by with_cells, and has a part some?")
+          "Whether the robot was made by with_cells, and a part has cells.")
       .def_prop_ro("name", [](const robot_model& r) { return r.name; })
       .def_prop_ro("model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; })
       .def_prop_ro(
@@ -677,7 +677,8 @@ void bind_robot(nb::module_& m) {
           },
           nb::arg("link"), nb::arg("joints").none() = nb::none(), nb::arg("base").none() = nb::none(),
           nb::arg("ignore_limits") = false, nb::arg("rest") = false,
-          "World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.")
+          "World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Arguments are those of "
+          "poses.")
       .def(
           "jacobian",
           [](const robot_model& r, nb::handle joints, nb::handle part, nb::handle point, nb::handle base,

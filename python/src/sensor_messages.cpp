@@ -128,8 +128,8 @@ void bind_sensor_messages(nb::module_& m) {
           "the "
           "sensor's pixels. Of a rectified image give P[:, :3] as k, and no d. ValueError if they contradict one "
           "another.")
-      .def_prop_ro("width", &camera::width, "Of the images, pixels.")
-      .def_prop_ro("height", &camera::height, "Of the images, pixels.")
+      .def_prop_ro("width", &camera::width, "The width of the images, in pixels.")
+      .def_prop_ro("height", &camera::height, "The height of the images, in pixels.")
       .def_prop_ro(
           "intrinsics",
           [](const camera& c) -> nb::object {

@@ -103,6 +103,17 @@ def test_the_stubs_have_every_name():
             assert any(f"{kind}{name}" in stubs for kind in ("class ", "def ", "")), name
 
 
+def test_help_is_made_of_sentences_that_stand_alone():
+    stubs = ast.parse((root / "python" / "clearance" / "_core.pyi").read_text())
+    said = [(place.name, line) for place in ast.walk(stubs)
+            if isinstance(place, (ast.ClassDef, ast.FunctionDef)) and place.name != "__init__"
+            for line in (ast.get_docstring(place) or "").splitlines()]
+    assert len(said) > 200
+    for name, line in said:
+        assert line.endswith((".", "?")), f"{name}: {line}"
+        assert not re.match(r"(Of|And|Or|Nor|Also|That|Those|and|or|nor|which|also)\b", line), f"{name}: {line}"
+
+
 def is_a(value, annotation):
     """Whether a value is what a stub says, in the words that stubs have."""
     if annotation.endswith(" | None"):

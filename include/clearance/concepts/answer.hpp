@@ -9,11 +9,12 @@ namespace clearance {
 
 /// A pair of a point and a part, and their distance.
 struct pair_distance {
-  std::uint32_t cloud, point;  ///< The point's number as in its cloud.
-  std::uint32_t part;
-  std::uint32_t
-      primitive;  ///< The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
-  real distance;
+  std::uint32_t cloud;      ///< The number of the point's cloud.
+  std::uint32_t point;      ///< The number of the point in its cloud.
+  std::uint32_t part;       ///< The number of the part.
+  std::uint32_t primitive;  ///< The nearest primitive of the part; of equally near ones the lowest. ~0u: the point is
+                            ///< inside the part's solid.
+  real distance;            ///< Metres, as computed.
 };
 
 /// What is kept of all pairs (point, part) of a frame: a view of memory that the scan's backend writes.

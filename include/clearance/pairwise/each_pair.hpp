@@ -69,19 +69,19 @@ struct each_pair {
   template <class Visitor>
   CLEARANCE_HD bool foresees(std::uint32_t index, std::uint32_t k, vec3 q, bool solid, Visitor& ask) const {
     if (fields == nullptr) return false;
-    const field_range its = fields[k](q);
-    if (solid && its.side != field_side::outside) return false;
-    if (its.low > ask.within) return true;
+    const field_range range = fields[k](q);
+    if (solid && range.side != field_side::outside) return false;
+    if (range.low > ask.within) return true;
     if constexpr (coarse_answer<Answer>)
-      if (its.high <= ask.within) {
-        const std::uint32_t u = ordered(its.high), known = load_relaxed(least + k);
+      if (range.high <= ask.within) {
+        const std::uint32_t u = ordered(range.high), known = load_relaxed(least + k);
         if (u < known) lower_word(least + k, u);
-        if (its.low > answer.reach(k, its.high, from_ordered(u < known ? u : known))) {
-          answer.take({cloud, index - first, k, none, its.high});
+        if (range.low > answer.reach(k, range.high, from_ordered(u < known ? u : known))) {
+          answer.take({cloud, index - first, k, none, range.high});
           return true;
         }
       }
-    ask.within = min(ask.within, its.high);
+    ask.within = min(ask.within, range.high);
     return false;
   }
   template <class Visitor>

@@ -156,7 +156,7 @@ class engine {
   /// until there was enough room.
   template <class Clouds>
   void begin(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, const Q& q) {
-    const auto& here = passes_.readable(clouds);
+    const auto& readable = passes_.readable(clouds);
     if constexpr (waits) {
       static_assert(retrying::needs<requires(const asked<On>& a, const typename Q::out& to, typename Q::result& r,
                                              std::size_t n) {
@@ -166,7 +166,7 @@ class engine {
       for (std::size_t least = 0;;) {
         const auto a = passes_.prepare(poses, clouds);
         to_ = q.space(a, least);
-        pass(a, poses, here, q, to_);
+        pass(a, poses, readable, q, to_);
         least = q.more(a, to_, result_);
         if (least == 0) return;
       }
@@ -174,7 +174,7 @@ class engine {
       const auto a = passes_.prepare(poses, clouds);
       asked_ = &q;
       to_ = q.space(a);
-      pass(a, poses, here, q, to_);
+      pass(a, poses, readable, q, to_);
     }
   }
   typename Q::result finish() {

@@ -33,16 +33,16 @@ struct nearest_bins {
   CLEARANCE_HD real reach(std::uint32_t part) const { return from_ordered(load_relaxed(&windows[part].bound)); }
   CLEARANCE_HD void take(const pair_distance& pair) const {
     nearest_window& w = windows[pair.part];
-    std::uint32_t* const its = counts + pair.part * std::size_t(bins);
+    std::uint32_t* const part_counts = counts + pair.part * std::size_t(bins);
     const std::uint32_t u = ordered(pair.distance);
     if (u < w.low || u > load_relaxed(&w.bound)) return;
     const std::uint32_t bin = (u - w.low) >> shift;
     if (bin >= bins) return;
-    count_one(its + bin);
+    count_one(part_counts + bin);
     if (shift != first_shift) return;
     if (bin < load_relaxed(&w.lowest)) lower_word(&w.lowest, bin);
     const std::uint32_t taken = count_one(&w.taken) + 1;
-    if (taken == w.wanted || (taken > w.wanted && taken % 64 == 0)) sharpen(w, its);
+    if (taken == w.wanted || (taken > w.wanted && taken % 64 == 0)) sharpen(w, part_counts);
   }
 
   /// No bin before it has a point, after the first pass.
@@ -54,11 +54,11 @@ struct nearest_bins {
 
  private:
   /// Other threads may be adding to the counts. A count is at worst too small, and the bound too large.
-  CLEARANCE_HD void sharpen(nearest_window& w, const std::uint32_t* its) const {
+  CLEARANCE_HD void sharpen(nearest_window& w, const std::uint32_t* part_counts) const {
     const std::uint32_t last = (load_relaxed(&w.bound) - w.low) >> shift;
     std::uint32_t sum = 0;
     for (std::uint32_t bin = load_relaxed(&w.lowest); bin < last; ++bin)
-      if ((sum += load_relaxed(its + bin)) >= w.wanted) return lower_word(&w.bound, end_of(w.low, bin, shift));
+      if ((sum += load_relaxed(part_counts + bin)) >= w.wanted) return lower_word(&w.bound, end_of(w.low, bin, shift));
   }
 };
 static_assert(explain_answer<nearest_bins>());
@@ -71,16 +71,16 @@ struct zero_words {
 /// The bin of the wanted point (the number of bins if there are fewer points), and how many points lie before it.
 /// No bin before `from` has one.
 struct wanted_bin {
-  std::uint32_t bin = 0, before = 0, its = 0;
+  std::uint32_t bin = 0, before = 0, count = 0;
 };
 CLEARANCE_HD inline wanted_bin find_wanted(const std::uint32_t* counts, std::uint32_t wanted, std::uint32_t from = 0) {
   wanted_bin found{from};
   for (; found.bin < nearest_bins::bins; ++found.bin) {
-    found.its = counts[found.bin];
-    if (found.before + std::uint64_t(found.its) >= wanted) return found;
-    found.before += found.its;
+    found.count = counts[found.bin];
+    if (found.before + std::uint64_t(found.count) >= wanted) return found;
+    found.before += found.count;
   }
-  found.its = 0;
+  found.count = 0;
   return found;
 }
 
@@ -128,8 +128,8 @@ struct keep_bound {
   nearest_window* windows;
   std::uint32_t *bounds, wanted;
   CLEARANCE_HD void operator()(std::size_t p) const {
-    const std::uint32_t* const its = counts + p * nearest_bins::bins;
-    const wanted_bin found = find_wanted(its, wanted, nearest_bins::first_of(windows[p]));
+    const std::uint32_t* const part_counts = counts + p * nearest_bins::bins;
+    const wanted_bin found = find_wanted(part_counts, wanted, nearest_bins::first_of(windows[p]));
     if (found.bin < nearest_bins::bins) {
       const std::uint32_t end = nearest_bins::end_of(0, found.bin, nearest_bins::first_shift);
       if (end < bounds[p]) bounds[p] = end;

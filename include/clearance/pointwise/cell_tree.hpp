@@ -275,9 +275,9 @@ class cell_tree {
 
   /// All cells of the first level, with all primitives.
   std::vector<cell_task> first_cells() {
-    std::vector<std::uint32_t> all(primitives_);
-    std::iota(all.begin(), all.end(), 0u);
-    lists_ = on_.copy_in(std::span<const std::uint32_t>(all));
+    std::vector<std::uint32_t> every_primitive(primitives_);
+    std::iota(every_primitive.begin(), every_primitive.end(), 0u);
+    lists_ = on_.copy_in(std::span<const std::uint32_t>(every_primitive));
     constexpr std::uint32_t side = 1u << first_level;
     std::vector<cell_task> tasks;
     for (std::uint32_t c = 0; c < side * side * side; ++c)
@@ -341,13 +341,13 @@ class cell_tree {
   /// Gives each of these cells its own list.
   void list(std::vector<cell_task>& tasks, const std::vector<cell_found>& found) {
     std::vector<std::uint32_t> first;
-    std::uint32_t all = 0;
+    std::uint32_t total = 0;
     for (const cell_found& f : found) {
-      first.push_back(all);
-      all += f.count;
+      first.push_back(total);
+      total += f.count;
     }
     const auto begin = on_.copy_in(std::span<const std::uint32_t>(first));
-    auto lists = on_.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>(all)));
+    auto lists = on_.copy_in(std::span<const std::uint32_t>(std::vector<std::uint32_t>(total)));
     on_.for_each(tasks.size(),
                  list_candidates{tasks_.data(), lists_.data(), marks_.data(), begin.data(), lists.data()});
     on_.wait();
@@ -378,10 +378,10 @@ class cell_tree {
       leaves.push_back(c);
     }
     if (leaves.empty()) return;
-    const auto there = on_.copy_in(std::span<const cell_task>(leaves));
+    const auto tasks = on_.copy_in(std::span<const cell_task>(leaves));
     auto made = on_.template make_scratch<cell_entry>(entries);
     auto sides = on_.template make_scratch<cell_kind>(leaves.size());
-    on_.for_each(leaves.size(), enter_candidates<PartView>{part_.data(), made_.shape, there.data(), lists_.data(),
+    on_.for_each(leaves.size(), enter_candidates<PartView>{part_.data(), made_.shape, tasks.data(), lists_.data(),
                                                            made.data(), sides.data()});
     const auto side = on_.copy_out(sides.data(), leaves.size());
     const auto before = std::uint32_t(made_.entries.size());
@@ -389,8 +389,8 @@ class cell_tree {
       made_.nodes[leaves[i].node] = {before + leaves[i].marks, std::uint16_t(leaves[i].count),
                                      side[i] == cell_kind::inside ? cell_kind::inside : cell_kind::list,
                                      side[i] == cell_kind::list};
-    const auto its = on_.copy_out(made.data(), entries);
-    made_.entries.insert(made_.entries.end(), its.begin(), its.end());
+    const auto listed = on_.copy_out(made.data(), entries);
+    made_.entries.insert(made_.entries.end(), listed.begin(), listed.end());
   }
 
   B on_;
@@ -420,8 +420,8 @@ cells<host> made_cells(const B& on, const Part& part, const cell_options& option
     return cells<host>{};
   }
   try {
-    const auto there = part.on(on);
-    return cell_tree(on, there.view(), facts, part.tree.primitives.size(), options).make(why_not);
+    const auto placed_part = part.on(on);
+    return cell_tree(on, placed_part.view(), facts, part.tree.primitives.size(), options).make(why_not);
   } catch (const std::exception& error) {
     if (!detail::out_of_memory(on, error)) throw;
     why_not = "there is not enough memory to make its cells";

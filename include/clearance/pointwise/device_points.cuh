@@ -61,9 +61,9 @@ struct points_of {
       if (reach(k) >= 0) best.offer({0, before + k, none});
     }
     __device__ bool hear(const visitor_type& other) {
-      const real its = scan::fresh(other.best.distance);
-      limit = min(limit, its);
-      return best.distance < its;
+      const real others = scan::fresh(other.best.distance);
+      limit = min(limit, others);
+      return best.distance < others;
     }
     __device__ void join(const visitor_type& other) {
       if (best.offer(other.best)) at = other.at;

@@ -58,8 +58,8 @@ struct each_point {
   }
   CLEARANCE_HD void take_certain() const {}
   CLEARANCE_HD nearest visitor(std::uint32_t index, std::uint32_t k) const { return {reach_of_pair(index, k)}; }
-  CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const nearest& its) const {
-    if (its.best != none && its.within < out.distance[index]) write(out, index, {its.within, k, its.best});
+  CLEARANCE_HD void take(std::uint32_t index, std::uint32_t k, const nearest& found) const {
+    if (found.best != none && found.within < out.distance[index]) write(out, index, {found.within, k, found.best});
   }
 };
 

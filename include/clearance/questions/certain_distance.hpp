@@ -16,20 +16,24 @@ namespace clearance {
 
 /// What lies between the distance of a pair and what is certain of it, one by one. Metres.
 struct uncertainty_shares {
-  double noise = 0, calibration = 0, time = 0;  ///< Of the point.
-  double joints = 0, delay = 0;                 ///< Of the part.
-  double gap = 0;                               ///< The part's gap and tolerance.
-  double rounding = 0;
+  double noise = 0;        ///< What the sensor's noise adds to the point's radius.
+  double calibration = 0;  ///< What an inexact pose of the sensor adds to the point's radius.
+  double time = 0;         ///< What an obstacle's motion since the point was seen adds to its radius.
+  double joints = 0;       ///< What inexact joints add to the part's radius.
+  double delay = 0;        ///< What the part's motion while the answer is made adds to its radius.
+  double gap = 0;          ///< The part's gap and tolerance.
+  double rounding = 0;     ///< What arithmetic may have lost.
 
+  /// All shares together.
   double sum() const { return noise + calibration + time + joints + delay + gap + rounding; }
 };
 
-/// The pair of a part that is least far apart for certain. `distance` is what was measured, `lower` the rest, at least
-/// 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+/// The pair of a part that is least far apart for certain. `distance` is what was measured, `lower` what is left of it.
+/// The pair need not be the nearest. Without a valid point the distance is infinite.
 struct certain_pair : part_witness {
-  real lower = 0;
-  uncertainty_shares shares;
-  real to_ball = infinity;  ///< Metres from the part to the ball around the point, the nearest ball.
+  real lower = 0;             ///< Metres that certainly lie between the point and the part.
+  uncertainty_shares shares;  ///< What is taken off the distance, by its cause.
+  real to_ball = infinity;    ///< Metres from the part to the ball around the point, the nearest ball.
 };
 
 /// `lower <= distance to the solid <= upper` if no radius is too small. `certain` is the pair that decides `lower`.
@@ -41,7 +45,7 @@ struct certain_distance_result {
   min_distance_result nominal;
   certain_pair certain;
   std::vector<certain_pair> parts;
-  std::uint64_t anywhere = 0;  ///< So many points may be anywhere: if it is not 0, nothing is free.
+  std::uint64_t anywhere = 0;  ///< The number of points that may be anywhere: if it is not 0, nothing is free.
   bool any_radius = false;     ///< Some cloud was `uncertain`, or parts had radii.
 };
 
@@ -55,10 +59,10 @@ inline void conclude(certain_distance_result& r) {
   for (certain_pair& part : r.parts) {
     if (part.point == none) continue;
     const uncertainty_shares& s = part.shares;
-    const double its = double(part.to_ball) - s.gap - s.rounding - (s.joints + s.delay);
-    part.lower = its > 0 && r.anywhere == 0 ? rounded_down(its) : 0;
-    if (its < lower) {
-      lower = its;
+    const double least = double(part.to_ball) - s.gap - s.rounding - (s.joints + s.delay);
+    part.lower = least > 0 && r.anywhere == 0 ? rounded_down(least) : 0;
+    if (least < lower) {
+      lower = least;
       r.certain = part;
     }
   }
@@ -96,9 +100,9 @@ class joined_certain {
     nominal_.add(nominal);
     all_.anywhere += piece.anywhere;
     for (std::size_t k = 0; k < piece.parts.size(); ++k) {
-      const certain_pair &its = piece.parts[k], &best = all_.parts[k];
-      if (std::tie(its.to_ball, its.cloud, its.point) < std::tie(best.to_ball, best.cloud, best.point))
-        all_.parts[k] = its;
+      const certain_pair &found = piece.parts[k], &best = all_.parts[k];
+      if (std::tie(found.to_ball, found.cloud, found.point) < std::tie(best.to_ball, best.cloud, best.point))
+        all_.parts[k] = found;
     }
   }
   certain_distance_result result() const {
@@ -119,17 +123,18 @@ class joined_certain {
 
 /// By how much a part may be elsewhere. Metres.
 struct part_radius {
-  double joints = 0;  ///< Because joints are not where they say,
-  double delay = 0;   ///< and because it moves while the answer is made.
+  double joints = 0;  ///< How far it may be elsewhere because joints are not where they say.
+  double delay = 0;   ///< How far it may be elsewhere because it moves while the answer is made.
 
+  /// Both together.
   double sum() const { return joints + delay; }
 };
 
-/// The same for the `radii` of other questions.
+/// Each part's radius as one number, as `radii` of other questions take it.
 inline std::vector<double> sums(std::span<const part_radius> radii) {
-  std::vector<double> all;
-  for (const part_radius& r : radii) all.push_back(r.sum());
-  return all;
+  std::vector<double> radius_of_each;
+  for (const part_radius& r : radii) radius_of_each.push_back(r.sum());
+  return radius_of_each;
 }
 
 namespace minimum {
@@ -176,9 +181,15 @@ struct read_pair {
                within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(q));
     const auto f = evaluate(parts[k], q, within, walk);  // not far beyond the nearest
     if (f.nearest.id == none) return;
-    const contact here = f.at(q, place.world_from_part);
-    pairs[i].measured = {f.distance,   k,          cloud, least.point, f.nearest.id, world_from_cloud(p),
-                         here.nearest, here.normal};
+    const contact touched = f.at(q, place.world_from_part);
+    pairs[i].measured = {.distance = f.distance,
+                         .part = k,
+                         .cloud = cloud,
+                         .point = least.point,
+                         .primitive = f.nearest.id,
+                         .at = world_from_cloud(p),
+                         .nearest = touched.nearest,
+                         .normal = touched.normal};
   }
 };
 
@@ -239,26 +250,26 @@ class certain_distance::engine {
     q.check(model_.size());
     asked_ = &q;
     const std::size_t parts = model_.size();
-    const auto& here = readable_(clouds);
+    const auto& readable = readable_(clouds);
     memory_.begin();
-    all_ = memory_.template space<min_distance_result>(2).data();
+    least_ = memory_.template space<min_distance_result>(2).data();
     minima_ = memory_.template space<part_minimum>(parts).data();
     pairs_ = memory_.template space<minimum::uncertain_pair>(parts + 1).data();
-    nominal_.start(poses, mapped_clouds(here, as_measured{}), min_distance{}, all_);
-    search_.start(poses, here, min_distance_per_part{}, {all_ + 1, minima_});
-    vague_ = read(poses, here);
+    nominal_.start(poses, mapped_clouds(readable, as_measured{}), min_distance{}, least_);
+    search_.start(poses, readable, min_distance_per_part{}, {least_ + 1, minima_});
+    vague_ = read(poses, readable);
   }
   result finish() {
     using backends::read_array;
-    std::vector<min_distance_result> all;
+    std::vector<min_distance_result> least;  // as measured, and what is certain
     std::vector<part_minimum> minima;
     std::vector<minimum::uncertain_pair> pairs;
-    back_(read_array{all, all_, 2}, read_array{minima, minima_, model_.size()},
+    back_(read_array{least, least_, 2}, read_array{minima, minima_, model_.size()},
           read_array{pairs, pairs_, model_.size() + 1});
     result r;
-    r.nominal = all[0];
+    r.nominal = least[0];
     r.any_radius = vague_ || !asked_->parts.empty();
-    tell(*asked_, all[1], minima, pairs, r);
+    tell(*asked_, least[1], minima, pairs, r);
     minimum::conclude(r);
     return r;
   }
@@ -290,15 +301,15 @@ class certain_distance::engine {
                                                                    .world_from_cloud = frame_.world_from_cloud,
                                                                    .cloud = now.cloud,
                                                                    .minima = minima_,
-                                                                   .nominal = all_,
+                                                                   .nominal = least_,
                                                                    .pairs = pairs_});
         });
     return vague;
   }
 
-  void tell(const certain_distance& q, const min_distance_result& all, std::span<const part_minimum> minima,
+  void tell(const certain_distance& q, const min_distance_result& certain, std::span<const part_minimum> minima,
             std::span<const minimum::uncertain_pair> pairs, result& r) const {
-    r.anywhere = all.dropped[int(drop_reason::too_close)];
+    r.anywhere = certain.dropped[int(drop_reason::too_close)];
     const auto radius = [&q](std::size_t k) { return q.parts.empty() ? part_radius{} : q.parts[k]; };
     for (std::size_t k = 0; k < model_.size(); ++k) {
       const minimum::uncertain_pair& pair = pairs[k];
@@ -308,13 +319,13 @@ class certain_distance::engine {
       part.to_ball = minima[k].distance;
       const frames::float_error error{errors_[k], frame_.error.per_metre};
       const radius_shares& s = pair.shares;
-      part.shares = {s.noise,
-                     s.calibration,
-                     s.time,
-                     radius(k).joints,
-                     radius(k).delay,
-                     frames::slop(model_.facts[k]),
-                     error.at(part.to_ball)};
+      part.shares = {.noise = s.noise,
+                     .calibration = s.calibration,
+                     .time = s.time,
+                     .joints = radius(k).joints,
+                     .delay = radius(k).delay,
+                     .gap = frames::slop(model_.facts[k]),
+                     .rounding = error.at(part.to_ball)};
     }
     if (r.nominal.part == none) return;
     const minimum::uncertain_pair& nearest = pairs.back();
@@ -338,7 +349,7 @@ class certain_distance::engine {
 
   // The frame that began: where its answers will be, and is a cloud uncertain?
   const certain_distance* asked_ = nullptr;
-  min_distance_result* all_ = nullptr;  // as measured, and what is certain
+  min_distance_result* least_ = nullptr;  // as measured, and what is certain
   part_minimum* minima_ = nullptr;
   minimum::uncertain_pair* pairs_ = nullptr;
   bool vague_ = false;

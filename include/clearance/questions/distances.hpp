@@ -16,17 +16,19 @@ namespace clearance {
 struct point_distances {
   arriving<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
                             ///< where there is no point.
-  arriving<std::uint32_t> part,
-      primitive;  ///< If `which` is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
+  /// If `which` is set, the nearest part of each point, of equally near ones the lowest; ~0u: none.
+  arriving<std::uint32_t> part;
+  /// If `which` is set, the nearest primitive of that part; ~0u: none, or the point is inside.
+  arriving<std::uint32_t> primitive;
   point_counts counts;
-  distance_certainty certain;  ///< Of each distance: another part than the nearest may be nearer in truth.
+  distance_certainty certain;  ///< What is certain of each distance: the nearest part may be another in truth.
 };
 
 /// Every point's distance to the nearest part (elsewhere d_max is called max_dist, or activation distance). A prepared
 /// question on a device remembers the primitive nearest to each point, by its number. Refused: d_max that is NaN.
 struct distances {
   double d_max = infinity;  ///< Metres; farther points are `+inf`, and cost next to nothing.
-  bool which = false;       ///< Also which part and primitive is nearest.
+  bool which = false;       ///< Whether to tell which part and primitive is nearest, too.
 
   using result = point_distances;
   using can = clearance::can<checking, joining, of_points>;

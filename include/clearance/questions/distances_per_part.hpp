@@ -12,20 +12,20 @@ namespace clearance {
 struct part_distances {
   arriving<real> distance;  ///< Metres: to sphere parts signed, to triangle parts 0 inside; `+inf` beyond d_max, NaN
                             ///< where there is no point.
-  std::size_t points = 0;
+  std::size_t points = 0;   ///< The number of points of all clouds.
   point_counts counts;
-  distance_certainty certain;  ///< Of each distance, by its part.
-  std::size_t parts = 0;
+  distance_certainty certain;  ///< What is certain of each distance, by its part.
+  std::size_t parts = 0;       ///< The number of parts.
 
-  /// Those of a part. Throws std::out_of_range if there is no such part.
+  /// The distances of a part to all points. Throws std::out_of_range if there is no such part.
   std::span<const real> of(std::size_t part) const& {
     check_number("part", part, parts);
     return std::span(distance).subspan(part * points, points);
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<real> of(std::size_t part) const&& {
-    const auto its = of(part);
-    return {its.begin(), its.end()};
+    const auto view = of(part);
+    return {view.begin(), view.end()};
   }
 };
 
@@ -36,7 +36,7 @@ struct written {
   using can = clearance::can<>;
   real* distance;
   const std::uint32_t* first_point;  ///< Per cloud.
-  std::size_t points;                ///< Of all clouds.
+  std::size_t points;                ///< The number of points of all clouds.
   real d_max;
 
   CLEARANCE_HD real reach(std::uint32_t) const { return d_max; }
@@ -50,7 +50,7 @@ static_assert(explain_answer<written>());
 template <point_source Source>
 struct nothing_written {
   Source source;
-  real* distance;  ///< The place of its first point and the first part.
+  real* distance;  ///< The place of the source's first point and the first part.
   std::size_t points, parts;
 
   CLEARANCE_HD void operator()(std::size_t i) const {
@@ -102,10 +102,10 @@ struct distances_per_part {
   template <class Asked, class Clouds>
   pairwise::written prepare(const Asked& a, const out& to, const Clouds& clouds) const {
     const real most = frames::largest_within(d_max);
-    real* its = to.distance;
+    real* to_distance = to.distance;
     for_each_cloud(clouds, [&]<point_source S>(const S& source, const Eigen::Isometry3d&) {
-      a.on.for_each(source.size(), pairwise::nothing_written<S>{source, its, a.points, a.parts()});
-      its += source.size();
+      a.on.for_each(source.size(), pairwise::nothing_written<S>{source, to_distance, a.points, a.parts()});
+      to_distance += source.size();
     });
     const auto [start] = a.put(a.first);
     return {to.distance, start, a.points, most};

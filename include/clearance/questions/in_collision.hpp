@@ -136,17 +136,17 @@ struct in_collision {
   static void place_in_whole(result& r, const piece_place& place) {
     if (r.cloud != none) r.point += place.first[r.cloud];
   }
-  static void merge(result& all, const result& other) {
+  static void merge(result& whole, const result& other) {
     const auto order = [](const result& r) {  // certain pairs first, then the lowest
       return std::tuple(r.cloud == none, r.state != state::collision, r.cloud, r.point, r.part);
     };
-    const bool some = all.state != state::no_data || other.state != state::no_data;
-    point_counts counts = all.counts;
+    const bool some = whole.state != state::no_data || other.state != state::no_data;
+    point_counts counts = whole.counts;
     counts.add(other.counts);
-    if (order(other) < order(all)) all = other;
-    all.counts = counts;
-    if (all.cloud == none && some)
-      all.state = counts.dropped[int(drop_reason::too_close)] != 0 ? state::possible : state::free;
+    if (order(other) < order(whole)) whole = other;
+    whole.counts = counts;
+    if (whole.cloud == none && some)
+      whole.state = counts.dropped[int(drop_reason::too_close)] != 0 ? state::possible : state::free;
   }
   static void so_far(result& r, std::uint64_t unseen) {
     if (unseen != 0 && r.state != state::collision) r.state = state::possible;

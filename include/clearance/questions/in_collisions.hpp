@@ -29,8 +29,8 @@ struct in_collisions_result {
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<state> trajectory(std::size_t i, std::size_t horizon) const&& {
-    const auto its = trajectory(i, horizon);
-    return {its.begin(), its.end()};
+    const auto view = trajectory(i, horizon);
+    return {view.begin(), view.end()};
   }
   std::vector<std::size_t> first_not_free(std::size_t horizon) const {
     return plan::first_of_each(std::span(of), horizon, first_of);
@@ -60,34 +60,34 @@ struct in_collisions {
     frames::check_margins(margins, parts);
     return {margins.data(), std::uint32_t(margins.size())};
   }
-  static arriving<state>& results(result& all) { return all.of; }
-  static void take_counts(result& all, const point_counts& counts, std::size_t) { all.counts = counts; }
+  static arriving<state>& results(result& r) { return r.of; }
+  static void take_counts(result& r, const point_counts& counts, std::size_t) { r.counts = counts; }
 
-  static void merge(result& all, const result& other) {
-    all.counts.add(other.counts);
-    const bool too_close = all.counts.dropped[int(drop_reason::too_close)] != 0;
-    for (std::size_t c = 0; c < all.of.size(); ++c) {
-      state& its = all.of[c];
+  static void merge(result& whole, const result& other) {
+    whole.counts.add(other.counts);
+    const bool too_close = whole.counts.dropped[int(drop_reason::too_close)] != 0;
+    for (std::size_t c = 0; c < whole.of.size(); ++c) {
+      state& known = whole.of[c];
       const state others = other.of[c];
-      if (its == state::collision || others == state::collision)
-        its = state::collision;
-      else if (its == state::no_data && others == state::no_data)
-        its = state::no_data;
+      if (known == state::collision || others == state::collision)
+        known = state::collision;
+      else if (known == state::no_data && others == state::no_data)
+        known = state::no_data;
       else
-        its = its == state::possible || others == state::possible || too_close ? state::possible : state::free;
+        known = known == state::possible || others == state::possible || too_close ? state::possible : state::free;
     }
   }
-  static void so_far(result& all, std::uint64_t unseen) {
-    for (state& its : all.of)
-      if (unseen != 0 && its != state::collision) its = state::possible;
+  static void so_far(result& r, std::uint64_t unseen) {
+    for (state& known : r.of)
+      if (unseen != 0 && known != state::collision) known = state::possible;
   }
 
   template <class On, class PartView, class Clouds>
   void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
-               const Clouds& clouds, result& all, std::size_t c) const {
+               const Clouds& clouds, result& r, std::size_t c) const {
     const collision_result one = ask(on, model, poses, clouds, in_collision{margins});
-    all.of[c] = one.state;
-    all.counts = one.counts;
+    r.of[c] = one.state;
+    r.counts = one.counts;
   }
 };
 

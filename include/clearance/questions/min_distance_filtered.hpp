@@ -23,25 +23,25 @@ filtered_distance min_distance_filtered(const On& on, const Robot& robot, const 
                                         const self_filter& filter = {}) {
   static_assert(explain_given<Clouds>());
   if constexpr (requires { typename On::several; }) {
-    filtered_distance all{ask(on, own, own_poses, clouds, filter), {}};
-    all.rest = ask(on, robot, poses, masked_clouds(clouds, all.filter.labels.data()), min_distance{});
-    return all;
+    filtered_distance r{ask(on, own, own_poses, clouds, filter), {}};
+    r.rest = ask(on, robot, poses, masked_clouds(clouds, r.filter.labels.data()), min_distance{});
+    return r;
   } else {
     return detail::one_call<On>::of(on, [&](auto... memory) {
       frames::readable_clouds<On> copies(on, memory...);
-      const auto& here = copies(clouds);
+      const auto& copied = copies(clouds);
       auto labels = on.template make_scratch<point_label>(count_points(clouds));
       auto counts = on.template make_scratch<self_filter_counts>(1);
       auto result = on.template make_scratch<min_distance_result>(1);
       const self_filter::out to{labels.data(), counts.data()};
       query filtered(on, own, filter, memory...);
-      filtered.enqueue(own_poses, here, to);
-      query(on, robot, min_distance{}, memory...).enqueue(poses, masked_clouds(here, labels.data()), result.data());
-      filtered_distance all;
+      filtered.enqueue(own_poses, copied, to);
+      query(on, robot, min_distance{}, memory...).enqueue(poses, masked_clouds(copied, labels.data()), result.data());
+      filtered_distance r;
       backends::readback<On> back(on, memory...);
-      back(backends::read_value{all.rest, result.data()});  // the last work, so that all is done
-      all.filter = filtered.read(filter, to);
-      return all;
+      back(backends::read_value{r.rest, result.data()});  // the last work, so that all is done
+      r.filter = filtered.read(filter, to);
+      return r;
     });
   }
 }

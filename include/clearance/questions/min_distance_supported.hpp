@@ -58,7 +58,7 @@ struct count_support {
   const position* at;      ///< One per candidate.
   std::uint32_t* support;  ///< One count per candidate: at least `enough`, if so many points are near.
   std::uint32_t candidates, enough;
-  double square;  ///< Of the radius.
+  double square;  ///< The radius, squared.
 
   CLEARANCE_HD void operator()(std::size_t i) const {
     const sample s = source[i];
@@ -108,10 +108,10 @@ struct count_support_of_pieces {
     for (std::uint32_t c = 0; c < each.candidates; ++c) {
       const ball& near = each.near[c];
       if (!(nearest(box, near.center) <= near.radius) || load_relaxed(each.support + c) >= each.enough) continue;
-      std::uint32_t its = farthest(box, near.center) <= all_within[c] ? valid : 0;
-      if (its == 0)
-        for (std::uint32_t j = 0; j < valid; ++j) its += each.confirms(at[j], c);
-      if (its != 0) count_one(each.support + c, its);
+      std::uint32_t confirming = farthest(box, near.center) <= all_within[c] ? valid : 0;
+      if (confirming == 0)
+        for (std::uint32_t j = 0; j < valid; ++j) confirming += each.confirms(at[j], c);
+      if (confirming != 0) count_one(each.support + c, confirming);
     }
   }
   static double nearest(const extent& box, vec3 p) {
@@ -159,14 +159,15 @@ namespace clearance {
 
 /// The nearest point that others confirm, and the nearer points that are alone.
 struct supported_distance {
-  /// That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no
-  /// valid point.
+  /// What min_distance says about the confirmed points that were asked. possible: none is confirmed. no_data: there is
+  /// no valid point.
   clearance::state state = clearance::state::no_data;
   real distance = not_a_number;  ///< Metres. Infinite: no point is confirmed; NaN: none of the `most` nearest is.
   real lower = 0;                ///< All confirmed points are certainly at least this far away; 0 if there is none.
   std::uint32_t cloud = none, point = none, part = none, primitive = none;
-  std::uint64_t isolated = 0;  ///< The number of nearer points that are not confirmed,
-  pair_distance nearest_isolated = {none, none, none, none, infinity};  ///< and the first of them.
+  std::uint64_t isolated = 0;  ///< The number of nearer points that are not confirmed.
+  /// The nearest of the points that are not confirmed.
+  pair_distance nearest_isolated = {none, none, none, none, infinity};
   point_counts counts;
 };
 
@@ -174,8 +175,8 @@ struct supported_distance {
 /// of them, by world coordinates in double. Refused: min_points or `most` of 0, `most` above 2^20, and a radius that is
 /// negative or not finite.
 struct min_distance_supported {
-  std::uint32_t min_points = 3;  ///< A point is confirmed by this many points, itself among them,
-  double radius = 0.02;          ///< within this many metres.
+  std::uint32_t min_points = 3;  ///< How many points confirm one, itself among them.
+  double radius = 0.02;          ///< Metres within which points confirm one another.
   std::size_t most = 4096;       ///< The search ends after this many of the nearest points, each asked once.
 
   using result = supported_distance;
@@ -203,9 +204,9 @@ inline std::pair<std::vector<pair_distance>, bool> nearest_points(const nearest_
   };
   const pair_distance* last = nullptr;  // of those behind, some may be missing
   for (std::size_t end = of_parts.per_part; end <= of_parts.pairs.size(); end += of_parts.per_part)
-    if (const pair_distance& its = of_parts.pairs[end - 1];
-        its.cloud != none && (last == nullptr || before(its, *last)))
-      last = &its;
+    if (const pair_distance& farthest_listed = of_parts.pairs[end - 1];
+        farthest_listed.cloud != none && (last == nullptr || before(farthest_listed, *last)))
+      last = &farthest_listed;
   std::vector<pair_distance> pairs;
   for (const pair_distance& pair : of_parts.pairs)
     if (pair.cloud != none && (last == nullptr || !before(*last, pair))) pairs.push_back(pair);
@@ -246,9 +247,9 @@ std::vector<std::uint32_t> count_around(Passes& passes, std::span<const Eigen::I
     std::vector<ball> balls;
     std::vector<double> all_within;
     for (const position& p : at) {
-      const place_around its = around(p, options.radius, frame.world_from_cloud);
-      balls.push_back(its.near);
-      all_within.push_back(its.all_within);
+      const place_around near_point = around(p, options.radius, frame.world_from_cloud);
+      balls.push_back(near_point.near);
+      all_within.push_back(near_point.all_within);
     }
     const auto [near] = memory.put(balls);
     const count_support<S> each{source,
@@ -310,9 +311,9 @@ double certain_of_confirmed(Passes& passes, std::span<const Eigen::Isometry3d> p
   if (!(r.distance > 0)) return nearest;
   for (real& reach : reaches) reach = frames::farther(r.distance, reach);
   std::vector<pair_distance> pairs = list_within(passes, poses, clouds, reaches).pairs;
-  std::erase_if(pairs, [&](const pair_distance& its) { return !(least(its.distance, its.part) < nearest); });
-  std::ranges::sort(pairs, {}, [&](const pair_distance& its) {
-    return std::tuple(least(its.distance, its.part), its.cloud, its.point, its.part);
+  std::erase_if(pairs, [&](const pair_distance& pair) { return !(least(pair.distance, pair.part) < nearest); });
+  std::ranges::sort(pairs, {}, [&](const pair_distance& pair) {
+    return std::tuple(least(pair.distance, pair.part), pair.cloud, pair.point, pair.part);
   });
   for (std::size_t begin = 0, many = 16; begin < pairs.size(); begin += many, many *= 8) {
     if (begin >= options.most) return least(pairs[begin].distance, pairs[begin].part);

@@ -35,13 +35,13 @@ struct min_distances_result {
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<min_distance_result> trajectory(std::size_t i, std::size_t horizon) const&& {
-    const auto its = trajectory(i, horizon);
-    return {its.begin(), its.end()};
+    const auto view = trajectory(i, horizon);
+    return {view.begin(), view.end()};
   }
   /// `first_below` of each trajectory, counted from its beginning.
   std::vector<std::size_t> first_below(double margin, std::size_t horizon) const {
     check(margin);
-    return plan::first_of_each(std::span(of), horizon, [&](auto its) { return first_of(its, margin); });
+    return plan::first_of_each(std::span(of), horizon, [&](auto results) { return first_of(results, margin); });
   }
 
  private:
@@ -66,19 +66,19 @@ class joined_minima {
   joined_minima(const Q&, std::span<const part_facts>) {}
 
   void add(typename Q::result piece, const piece_place& place) {
-    auto& its = Q::results(piece);
-    for (min_distance_result& r : its)
+    auto& results = Q::results(piece);
+    for (min_distance_result& r : results)
       if (r.cloud != none) r.point += place.first[r.cloud];
-    for (std::size_t c = 0; c < its.size(); ++c)
+    for (std::size_t c = 0; c < results.size(); ++c)
       if (c < all_.size())
-        all_[c].add(minimum::of_pieces(its[c]));
+        all_[c].add(minimum::of_pieces(results[c]));
       else
-        all_.emplace_back(its[c]);
+        all_.emplace_back(results[c]);
     result_ = std::move(piece);
   }
   typename Q::result result() {
-    auto& its = Q::results(result_);
-    for (std::size_t c = 0; c < its.size(); ++c) its[c] = all_[c].answer(scan::has_interior<PartView>);
+    auto& results = Q::results(result_);
+    for (std::size_t c = 0; c < results.size(); ++c) results[c] = all_[c].answer(scan::has_interior<PartView>);
     return std::move(result_);
   }
 
@@ -111,20 +111,20 @@ struct min_distances {
     check_radii(radii, parts);
   }
   searched checked(std::size_t) const { return {frames::largest_within(d_max)}; }
-  static arriving<min_distance_result>& results(result& all) { return all.of; }
+  static arriving<min_distance_result>& results(result& r) { return r.of; }
   static void take_counts(result&, const point_counts&, std::size_t) {}
-  static void so_far(result& all, std::uint64_t unseen) {
-    for (min_distance_result& r : all.of) minimum::allow_for_unseen(r, unseen);
+  static void so_far(result& r, std::uint64_t unseen) {
+    for (min_distance_result& one : r.of) minimum::allow_for_unseen(one, unseen);
   }
 
   template <class On, class PartView, class Clouds>
   void ask_one(const On& on, const model_view<PartView>& model, std::span<const Eigen::Isometry3d> poses,
-               const Clouds& clouds, result& all, std::size_t c) const {
+               const Clouds& clouds, result& r, std::size_t c) const {
     const real most = frames::largest_within(d_max);
     frames::frame_ahead ahead;
     const auto& frame = ahead.facts_of(model.facts, poses, clouds);
-    all.of[c] = ask(on, model, poses, clouds, min_distance{});
-    frames::cut(all.of[c], most, frame.slop, frame.error);
+    r.of[c] = ask(on, model, poses, clouds, min_distance{});
+    frames::cut(r.of[c], most, frame.slop, frame.error);
   }
 };
 

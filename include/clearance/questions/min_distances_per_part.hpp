@@ -14,7 +14,7 @@ struct min_distances_per_part_result {
   std::size_t parts = 0;
 
   std::size_t size() const { return parts == 0 ? 0 : all.size() / parts; }
-  /// Those of a configuration. Throws std::out_of_range if there is no such configuration.
+  /// The results of a configuration's parts. Throws std::out_of_range if there is no such configuration.
   std::span<const min_distance_result> of(std::size_t c) const& {
     check_number("configuration", c, size());
     return std::span(all).subspan(c * parts, parts);

@@ -81,16 +81,16 @@ struct nearest_k {
     for (pair_distance& pair : r.pairs)
       if (pair.cloud != none) pair.point += place.first[pair.cloud];
   }
-  static void merge(result& all, const result& other) {
+  static void merge(result& whole, const result& other) {
     within_result both;
-    const std::size_t parts = all.per_part == 0 ? 0 : all.pairs.size() / all.per_part;
-    for (const auto from : {std::span<const pair_distance>(all.pairs), std::span<const pair_distance>(other.pairs)})
+    const std::size_t parts = whole.per_part == 0 ? 0 : whole.pairs.size() / whole.per_part;
+    for (const auto from : {std::span<const pair_distance>(whole.pairs), std::span<const pair_distance>(other.pairs)})
       for (const pair_distance& pair : from)
         if (pair.cloud != none) both.pairs.push_back(pair);
     pairwise::put_in_order(both, parts);
-    pairwise::take_nearest(all, both);
-    all.counts.add(other.counts);
-    all.certain.widen(other.certain);
+    pairwise::take_nearest(whole, both);
+    whole.counts.add(other.counts);
+    whole.certain.widen(other.certain);
   }
 };
 

@@ -164,7 +164,7 @@ struct nearest_sample<host> {
   static void ask(const S& source, const frames::cloud_frame& frame, const std::vector<extent>& boxes,
                   const model_view<PartView>& model, std::uint32_t part, std::size_t most, least_distances& found) {
     const frames::placement& place = frame.places[part];
-    const PartView& its = model.parts[part];
+    const PartView& searched = model.parts[part];
     const any_depth walk{stack_need(model.depth, model.width)};
     std::vector<std::pair<real, std::uint32_t>> order;
     for (std::uint32_t n = 0; n < boxes.size(); ++n)
@@ -184,12 +184,12 @@ struct nearest_sample<host> {
         ++asked;
         const vec3 q = place.part_from_cloud(s.position - frame.origin);
         if constexpr (scan::has_interior<PartView>)
-          if (its.interior.inside(q)) {
+          if (searched.interior.inside(q)) {
             found.add(0);
             continue;
           }
         nearest near{found.bound()};
-        walk(its.tree, q, near);
+        walk(searched.tree, q, near);
         if (near.best != nearest::none) found.add(near.within);
       }
     }
@@ -210,35 +210,35 @@ namespace clearance {
 /// The pairs of part k begin at k * per_part, the nearest first, then by cloud and point. If there are fewer, the rest
 /// is at no point, and infinitely far.
 struct nearest_k_result {
-  std::size_t per_part = 0;
+  std::size_t per_part = 0;  ///< The number of pairs in each part's list.
   std::vector<pair_distance> pairs;
   point_counts counts;
-  distance_certainty certain;  ///< Of each pair's distance, by its part.
+  distance_certainty certain;  ///< What is certain of each pair's distance, by its part.
 
-  /// Those of a part. Throws std::out_of_range if there is no such part.
+  /// The pairs of a part. Throws std::out_of_range if there is no such part.
   std::span<const pair_distance> of(std::size_t part) const& {
     check_number("part", part, per_part == 0 ? 0 : pairs.size() / per_part);
     return std::span(pairs).subspan(part * per_part, per_part);
   }
   /// A copy: a temporary result is gone before a view of it is read.
   std::vector<pair_distance> of(std::size_t part) const&& {
-    const auto its = of(part);
-    return {its.begin(), its.end()};
+    const auto view = of(part);
+    return {view.begin(), view.end()};
   }
 };
 
 namespace pairwise {
 
-inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< For one part.
+inline constexpr std::size_t most_listed = std::size_t(1) << 20;  ///< The most pairs of one part.
 
 /// Keeps the first `per_part` pairs of each part of `near`.
-inline void take_nearest(nearest_k_result& all, const within_result& near) {
-  all.pairs.clear();
+inline void take_nearest(nearest_k_result& kept, const within_result& near) {
+  kept.pairs.clear();
   for (std::uint32_t p = 0; p + 1 < near.offsets.size(); ++p) {
     const auto begin = near.pairs.begin() + std::ptrdiff_t(near.offsets[p]);
-    all.pairs.insert(all.pairs.end(), begin,
-                     begin + std::ptrdiff_t(std::min(all.per_part, near.offsets[p + 1] - near.offsets[p])));
-    all.pairs.resize((p + 1) * all.per_part, {none, none, p, none, infinity});
+    kept.pairs.insert(kept.pairs.end(), begin,
+                      begin + std::ptrdiff_t(std::min(kept.per_part, near.offsets[p + 1] - near.offsets[p])));
+    kept.pairs.resize((p + 1) * kept.per_part, {none, none, p, none, infinity});
   }
 }
 
@@ -333,23 +333,23 @@ std::vector<real> radii_of_nearest(Passes& passes, std::span<const Eigen::Isomet
     passes.memory.begin();
     std::uint32_t* const counts = passes.memory.template space<std::uint32_t>(parts * nearest_bins::bins).data();
     on.for_each(parts * nearest_bins::bins, zero_words{counts});
-    const auto [there] = passes.memory.put(windows);
-    passes.enqueue(poses, clouds, nearest_bins{counts, there, shift},
+    const auto [window_memory] = passes.memory.put(windows);
+    passes.enqueue(poses, clouds, nearest_bins{counts, window_memory, shift},
                    passes.memory.template space<point_counts>(1).data());
-    std::vector<std::uint32_t> all;
-    passes.back(backends::read_array{all, counts, parts * nearest_bins::bins});
+    std::vector<std::uint32_t> counted;
+    passes.back(backends::read_array{counted, counts, parts * nearest_bins::bins});
     std::size_t listed = 0;
     for (std::size_t p = 0; p < parts; ++p) {
       if (windows[p].wanted == 0) {
         listed += before[p];
         continue;
       }
-      const wanted_bin found = next_window{all.data(), windows.data(), bounds.data(), shift}(p);
+      const wanted_bin found = next_window{counted.data(), windows.data(), bounds.data(), shift}(p);
       if (found.bin == nearest_bins::bins && again && first[p] < d_max)
         return radii_of_nearest(passes, poses, clouds, k, d_max, bounds_of_nearest(passes, poses, clouds, k, d_max),
                                 false);
       before[p] += found.before;
-      listed += before[p] + found.its;
+      listed += before[p] + found.count;
     }
     if (listed <= enough) break;
   }

@@ -36,9 +36,16 @@ struct witness_body {
     const auto f = evaluate(parts[i], q, least.distance, walk);
     if (f.nearest.id == none || f.distance != least.distance) return;
     const real share = f.inside ? 0 : scan::share_near(f.nearest.primitive, q);
-    const contact here = f.at(scan::place_at(q, share), place.world_from_part);
+    const contact touched = f.at(scan::place_at(q, share), place.world_from_part);
     const position at = world_from_cloud(scan::place_at(p, share));
-    witnesses[i] = {f.distance, std::uint32_t(i), cloud, least.point, f.nearest.id, at, here.nearest, here.normal};
+    witnesses[i] = {.distance = f.distance,
+                    .part = std::uint32_t(i),
+                    .cloud = cloud,
+                    .point = least.point,
+                    .primitive = f.nearest.id,
+                    .at = at,
+                    .nearest = touched.nearest,
+                    .normal = touched.normal};
   }
 };
 
@@ -47,7 +54,7 @@ struct witness_body {
 /// The witness of every part's minimum. On a device it is one kernel per cloud, after min_distance_per_part in a stream
 /// or graph. Refused: neither as many minima as parts, and one that is not of these poses and clouds.
 struct part_witnesses {
-  borrowed<part_minimum> minima;  ///< As min_distance_per_part gives them.
+  borrowed<part_minimum> minima;  ///< Every part's least distance, as min_distance_per_part gives it.
 
   using result = std::vector<part_witness>;
   using can = clearance::can<>;
@@ -80,13 +87,13 @@ class part_witnesses::engine {
     evaluate_all(poses, readable_(clouds), std::get<0>(memory_.put(q.minima)), found_);
   }
   result finish() {
-    result all;
-    back_(backends::read_array{all, found_, asked_->minima.size()});
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (asked_->minima[k].cloud != none && all[k].part == none)
+    result witnesses;
+    back_(backends::read_array{witnesses, found_, asked_->minima.size()});
+    for (std::size_t k = 0; k < witnesses.size(); ++k)
+      if (asked_->minima[k].cloud != none && witnesses[k].part == none)
         throw std::invalid_argument("clearance: the minimum of part " + std::to_string(k) +
                                     " is not one of these poses and clouds");
-    return all;
+    return witnesses;
   }
 
   template <class Clouds>

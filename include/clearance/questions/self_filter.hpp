@@ -18,7 +18,8 @@ namespace clearance {
 /// How many points of some clouds are the robot's. Plain data that a kernel may write or read.
 struct self_filter_counts {
   point_counts points;
-  unsigned long long own = 0, uncertain = 0;  ///< Of the valid points.
+  unsigned long long own = 0;        ///< How many valid points are certainly the robot's.
+  unsigned long long uncertain = 0;  ///< How many valid points are perhaps the robot's.
 };
 
 namespace pairwise {
@@ -105,7 +106,7 @@ struct count_labels {
 /// tolerance or rounding leave that open, it is `uncertain` and not hidden: a point hidden wrongly may be an obstacle,
 /// a point kept wrongly stops a robot. Without a certificate every other point is uncertain.
 struct self_filter_result {
-  arriving<point_label> labels;      ///< One per point of all clouds, in their order.
+  arriving<point_label> labels;      ///< Whose each point is, in the order of the clouds and their points.
   std::vector<std::size_t> offsets;  ///< The labels of cloud c are offsets[c] to offsets[c + 1] - 1.
   std::vector<std::uint32_t> rest;   ///< The numbers of all valid points that are not hidden, ascending.
   self_filter_counts counts;
@@ -133,9 +134,9 @@ inline bool set_paddings(std::span<const double> padding, std::span<const part_f
   reaches.resize(2 * parts);
   bool all_uncertain = false;
   for (std::size_t k = 0; k < parts; ++k) {
-    const double its = padding[padding.size() == 1 ? 0 : k];
-    reaches[parts + k] = frames::is_within(its, facts[k], error);
-    reaches[k] = frames::may_be_within(its, facts[k], error);
+    const double metres = padding[padding.size() == 1 ? 0 : k];
+    reaches[parts + k] = frames::is_within(metres, facts[k], error);
+    reaches[k] = frames::may_be_within(metres, facts[k], error);
     if (!(reaches[k] < infinity)) {
       all_uncertain = true;
       reaches[k] = reaches[parts + k];
@@ -226,12 +227,12 @@ struct self_filter {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result all{.labels = arriving<point_label>(a.arrivals())};
-    a.bring(backends::read_array{all.labels, from.labels, a.points}, backends::read_value{all.counts, from.counts});
-    all.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
-    all.offsets.push_back(a.points);
-    pairwise::list_rest(all);
-    return all;
+    result r{.labels = arriving<point_label>(a.arrivals())};
+    a.bring(backends::read_array{r.labels, from.labels, a.points}, backends::read_value{r.counts, from.counts});
+    r.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
+    r.offsets.push_back(a.points);
+    pairwise::list_rest(r);
+    return r;
   }
 };
 

@@ -28,8 +28,8 @@ struct deepen_body {
     found best = read(out, first + i);
     for (std::uint32_t k = 0; k < part_count; ++k) {
       if (!frames::may_reach(places[k].around, 0, p)) continue;
-      const auto its = minimum::evaluate(parts[k], places[k].part_from_cloud(p), 0, walk);
-      if (its.inside && its.nearest.id != none) best.offer({0 - its.nearest.within, k, its.nearest.id});
+      const auto found = minimum::evaluate(parts[k], places[k].part_from_cloud(p), 0, walk);
+      if (found.inside && found.nearest.id != none) best.offer({0 - found.nearest.within, k, found.nearest.id});
     }
     write(out, first + i, best);
   }
@@ -42,7 +42,7 @@ struct deepen_body {
 /// the nearest triangle, inside too, and points inside are within any d_max. Refused: d_max that is negative or NaN.
 struct signed_distances {
   double d_max = infinity;  ///< Metres; farther points are `+inf`, and cost next to nothing.
-  bool which = false;       ///< Also which part and triangle is nearest.
+  bool which = false;       ///< Whether to tell which part and triangle is nearest, too.
 
   using result = point_distances;
   using can = clearance::can<choosing, checking, joining, of_points>;

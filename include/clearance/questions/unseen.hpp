@@ -33,11 +33,12 @@ namespace clearance {
 /// A part, and where the room that no camera sees is nearest to it: `cloud` is the camera, `point` the pixel, `at` lies
 /// on the pixel's way. Metres.
 struct unseen_part : part_witness {
-  real lower = 0;        ///< At least so far away is all that no camera sees and some camera hides.
-  real out_of_view = 0;  ///< Which share of the ball around the part no camera shows. Nothing is said about that. NaN
-                         ///< if a ray image may show the rest.
-  real to_edge = not_a_number;  ///< If `edges` are asked for: the ball around the part is at least so far from all
-                                ///< that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+  real lower = 0;        ///< Room that some camera hides and no camera sees is at least so far away.
+  real out_of_view = 0;  ///< The share, 0 to 1, of the ball around the part that no camera shows; nothing is said about
+                         ///< it. NaN if a ray image may show the rest.
+  /// If `edges` are asked for: at least so many metres lie between the ball around the part and all that no image
+  /// shows. 0: some of the ball is not shown. NaN: there are ray images alone.
+  real to_edge = not_a_number;
 };
 
 /// `all`: as a min_distance_result. If the robot reaches into what is hidden its state is `unknown`. `seen` counts
@@ -46,7 +47,8 @@ struct unseen_part : part_witness {
 struct unseen_result {
   min_distance_result all;
   std::vector<unseen_part> parts;
-  min_distance_result own_shadow;  ///< What pixels of the robot's own points (`masked`) hide, of all cameras together.
+  /// The least distance to what pixels of the robot's own points (`masked`) hide from all cameras together.
+  min_distance_result own_shadow;
 };
 
 namespace minimum {
@@ -54,12 +56,12 @@ namespace minimum {
 /// What one camera says about each part. It is kept from frame to frame.
 struct camera_finding {
   // What is known before the search ends.
-  std::vector<frames::float_error> errors;  ///< Of each part's distance.
-  frames::float_error error;                ///< Of all of them.
+  std::vector<frames::float_error> errors;  ///< How far off each part's distance may be.
+  frames::float_error error;                ///< How far off any part's distance may be.
   std::vector<double> from_edge;
-  std::vector<std::uint64_t> shown;  ///< Of the samples of a part's ball, one bit each.
+  std::vector<std::uint64_t> shown;  ///< Which samples of each part's ball the camera shows, one bit each.
   bool tells_shown, vague;
-  bool shadow;  ///< Is its own shadow asked about?
+  bool shadow;  ///< Is the robot's own shadow asked about?
 
   // What the search has found.
   min_distance_result all;
@@ -204,11 +206,11 @@ struct pinhole_view {
 /// in_collision.
 struct unseen {
   hiding room = {};                   ///< Where hidden room begins and ends.
-  double half_pixel = 0;              ///< For ray images: `half_pixel_of` their table.
-  borrowed<point_label> labels = {};  ///< Of all pixels of all clouds, as self_filter gives them, or none.
-  bool places = false;  ///< Also where every part is nearest: `at`, `nearest` and `normal`, as the robot always has.
-  bool edges = false;   ///< Also how far every part is from the edge of the view: `to_edge`.
-  std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
+  double half_pixel = 0;              ///< What `half_pixel_of` says of a ray image's table; 0 without ray images.
+  borrowed<point_label> labels = {};  ///< Whose each pixel of all clouds is, as self_filter gives it; or none.
+  bool places = false;                ///< Whether to tell of every part, as of the robot, `at`, `nearest` and `normal`.
+  bool edges = false;                 ///< Whether to tell `to_edge`: how far every part is from the edge of the view.
+  std::vector<double> radii = {};     ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
   using result = unseen_result;
   using can = clearance::can<checking, of_images>;
@@ -282,15 +284,15 @@ class unseen::engine {
       detail::check_labels(q.labels, clouds);
       labels = std::get<0>(memory_.put(q.labels));
     }
-    const auto& here = readable_(clouds);
-    const std::size_t cameras = count_clouds(here), parts = model_.size();
-    shadows_ = labels != nullptr || any_masked(here);
+    const auto& images = readable_(clouds);
+    const std::size_t cameras = count_clouds(images), parts = model_.size();
+    shadows_ = labels != nullptr || any_masked(images);
     places_ = q.places || cameras > 1;  // the least of several cameras may be any part's
     const std::size_t searches = shadows_ ? 2 * cameras : cameras;
     all_ = memory_.template space<min_distance_result>(searches).data();
     minima_ = memory_.template space<part_minimum>(searches * parts).data();
     if (places_) nearest_ = memory_.template space<part_witness>(cameras * parts).data();
-    for_each_cloud(here, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
+    for_each_cloud(images, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
       const auto image = as_measured{}(given);
       if constexpr (seeing_image<decltype(as_measured{}(given))>) {
         begin_camera(poses, given, image, pose, labels, cameras);
@@ -321,7 +323,7 @@ class unseen::engine {
   }
   /// Forgets the last frame. The next one starts cold; its answer is the same.
   void forget() {
-    for (search& its : searches_) its.forget();
+    for (search& s : searches_) s.forget();
   }
 
  private:

@@ -11,10 +11,10 @@ namespace clearance {
 /// Points near parts. The pairs of part k are offsets[k] to offsets[k + 1] - 1, the nearest first, then by cloud and
 /// point.
 struct within_result {
-  std::vector<std::size_t> offsets;
-  std::vector<pair_distance> pairs;  ///< Distances as computed, in metres.
+  std::vector<std::size_t> offsets;  ///< Where each part's pairs begin, and the number of all.
+  std::vector<pair_distance> pairs;  ///< The pairs, with distances as computed, in metres.
   point_counts counts;
-  distance_certainty certain;  ///< Of each pair's distance, by its part.
+  distance_certainty certain;  ///< What is certain of each pair's distance, by its part.
 };
 
 namespace pairwise {

@@ -11,11 +11,12 @@ namespace clearance {
 /// One zone of one part. A point counts if it may be nearer than the zone's threshold: arithmetic, gaps, tolerances and
 /// all radii are on the safe side.
 struct zone {
-  std::uint64_t points = 0;
-  real nearest = infinity;  ///< The least distance of its points, less their radii, as computed. Metres.
-  std::uint32_t nearest_cloud = none,
-                nearest_point = none;  ///< The point at that distance; of equally near ones the lowest.
-  std::uint32_t first_cloud = none, first_point = none;  ///< The lowest of its points.
+  std::uint64_t points = 0;  ///< How many points are in the zone.
+  real nearest = infinity;   ///< The least distance of the zone's points, less their radii, as computed. Metres.
+  std::uint32_t nearest_cloud = none;  ///< The cloud of the nearest point.
+  std::uint32_t nearest_point = none;  ///< The nearest point's number in that cloud; of equally near ones the lowest.
+  std::uint32_t first_cloud = none;    ///< The lowest cloud that has a point in the zone.
+  std::uint32_t first_point = none;    ///< The lowest number in that cloud of a point in the zone.
 
   /// Adds the same zone's other points.
   void add(const zone& other) {
@@ -35,8 +36,9 @@ struct zone {
 
 /// What is in the zones of each part.
 struct zones_result {
-  std::size_t per_part = 0, min_points = 1;
-  std::vector<zone> zones;  ///< The zones of a part, the innermost first, then those of the next part.
+  std::size_t per_part = 0;    ///< The number of zones of each part.
+  std::size_t min_points = 1;  ///< A zone with fewer points counts as empty (`innermost`).
+  std::vector<zone> zones;     ///< The zones of a part, the innermost first, then those of the next part.
   point_counts counts;
   std::uint64_t unseen = 0;  ///< Points that there was no time for; any of them may be in any zone.
 
@@ -64,7 +66,7 @@ namespace pairwise {
 /// What a scan keeps for one zone of one part, without the zones inside it. Points are numbered through all clouds.
 struct zone_words {
   unsigned long long points = 0;
-  distance_key nearest = no_key;  ///< (distance, point)
+  distance_key nearest = no_key;  ///< The nearest point, by (distance, number).
   std::uint32_t first = ~0u;      ///< The lowest point.
 };
 
@@ -169,8 +171,8 @@ inline void check_thresholds(std::span<const double> thresholds) {
 /// Counts the points in zones around every part, in one pass. Refused: thresholds that are negative, not in order, none
 /// or not the same number for each part, `min_points` of 0, and radii as in_collision.
 struct zones {
-  std::vector<double> thresholds;  ///< Metres, in ascending order: the same for every part,
-  bool each_part = false;          ///< or, if this is set, those of each part in turn, equally many.
+  std::vector<double> thresholds;  ///< Metres, in ascending order: the same for every part, unless `each_part` is set.
+  bool each_part = false;          ///< `thresholds` are those of each part in turn, equally many.
   std::size_t min_points = 1;      ///< A zone with fewer counts as empty (`innermost`); its points are still reported.
   std::vector<double> radii = {};  ///< By how much parts may be elsewhere, in metres: all alike, or each.
 
@@ -215,8 +217,8 @@ struct zones {
     const std::size_t each = per_part(a.parts());
     a.reaches.clear();
     for (std::size_t k = 0; k < a.parts(); ++k)
-      for (const double its : std::span(thresholds).subspan(each_part ? k * each : 0, each))
-        a.reaches.push_back(frames::may_be_within(its, widened(a.facts[k], radius_of(radii, k)), a.frame.error));
+      for (const double threshold : std::span(thresholds).subspan(each_part ? k * each : 0, each))
+        a.reaches.push_back(frames::may_be_within(threshold, widened(a.facts[k], radius_of(radii, k)), a.frame.error));
     using answer = pairwise::count_in_zones;
     const std::size_t words = answer::copies * a.reaches.size();
     auto* const empty = a.template space<pairwise::zone_words>(words);
@@ -251,9 +253,9 @@ struct zones {
       if (z.first_cloud != none) z.first_point += place.first[z.first_cloud];
     }
   }
-  static void merge(result& all, const result& other) {
-    for (std::size_t i = 0; i < all.zones.size(); ++i) all.zones[i].add(other.zones[i]);
-    all.counts.add(other.counts);
+  static void merge(result& whole, const result& other) {
+    for (std::size_t i = 0; i < whole.zones.size(); ++i) whole.zones[i].add(other.zones[i]);
+    whole.counts.add(other.counts);
   }
   /// Zones hold at least these points; none is known to be empty.
   static void so_far(result& r, std::uint64_t unseen) { r.unseen = unseen; }
