@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Questions about pairs on a GPU that holds the points: zones, the points within a distance, whether there is one, and
 // which are the robot's own; and, to compare, every part's minimum. *close*: from close_camera(); *fields*, *cells*: of
-// a robot whose parts have them. CUDA events, behind other work.
+// a robot whose parts have them, for kernels that look into them (those of in_collision and of labels look into no
+// cells). CUDA events, behind other work.
 #include "device.cuh"
 #include "tables.cuh"
 
@@ -189,16 +190,10 @@ BENCHMARK_CAPTURE(within, 10cm_close_cells, 0.1f, true, cells) TIMES;
 BENCHMARK_CAPTURE(within, 10cm_close_both, 0.1f, true, both) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_5cm, 0.05f, bare) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_5cm_fields, 0.05f, fields) TIMES;
-BENCHMARK_CAPTURE(in_collision, within_5cm_cells, 0.05f, cells) TIMES;
-BENCHMARK_CAPTURE(in_collision, within_5cm_both, 0.05f, both) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_10cm, 0.1f, bare) TIMES;
 BENCHMARK_CAPTURE(in_collision, within_10cm_fields, 0.1f, fields) TIMES;
-BENCHMARK_CAPTURE(in_collision, within_10cm_cells, 0.1f, cells) TIMES;
-BENCHMARK_CAPTURE(in_collision, within_10cm_both, 0.1f, both) TIMES;
 BENCHMARK_CAPTURE(own, labels, false, true, bare) TIMES;
 BENCHMARK_CAPTURE(own, labels_fields, false, true, fields) TIMES;
-BENCHMARK_CAPTURE(own, labels_cells, false, true, cells) TIMES;
-BENCHMARK_CAPTURE(own, labels_both, false, true, both) TIMES;
 BENCHMARK_CAPTURE(own, labels_then_minimum, true, true, bare) TIMES;
 BENCHMARK_CAPTURE(own, labels_then_minimum_fields, true, true, fields) TIMES;
 BENCHMARK_CAPTURE(own, labels_then_minimum_cells, true, true, cells) TIMES;
