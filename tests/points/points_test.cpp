@@ -4,6 +4,7 @@
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
+#include <clearance/points/sharded.hpp>
 #include <clearance/points/slice.hpp>
 #include <clearance/points/strided_points.hpp>
 
@@ -193,6 +194,28 @@ TEST_CASE("The range of a depth image is along z, both ends included") {
   depth_image<std::uint16_t> empty(nullptr, 0, 0, camera);
   CHECK(empty.size() == 0);
   CHECK(empty.bytes().empty());
+}
+
+TEST_CASE("An image without pixels states no rounding, and changes none beside it") {
+  const std::uint16_t pixels[6] = {1, 2, 3, 4, 5, 6};
+  const clearance::ray rays[6] = {};
+  const auto check = [](const auto& full, const auto& empty, auto no_rows) {
+    no_rows.height = 0;
+    const auto own = clearance::rounding_of(full);
+    CHECK(own.relative > 0);
+    for (const auto& none_of_it : {empty, no_rows}) {
+      const auto error = clearance::rounding_of(none_of_it);
+      CHECK((none_of_it.size() == 0 && error.absolute == 0 && error.relative == 0));
+      for (const auto& pieces : {std::vector{none_of_it, full}, std::vector{full, none_of_it}}) {
+        const auto together = clearance::rounding_of(clearance::sharded(pieces));
+        CHECK((together.absolute == own.absolute && together.relative == own.relative));
+      }
+    }
+  };
+  const depth_image<std::uint16_t> image(pixels, 3, 2, {600, 600, 1, 0.5});
+  check(image, depth_image<std::uint16_t>(), image);
+  const clearance::ray_image<std::uint16_t> by_rays(pixels, rays, 3, 2);
+  check(by_rays, clearance::ray_image<std::uint16_t>(), by_rays);
 }
 
 namespace {

@@ -180,7 +180,9 @@ struct depth_image {
       detail::refuse_source("a depth image has a centre (cx, cy) that is not finite");
   }
   /// Scale, focal length and three products cost x and y six roundings, and z two. Those of cx and cy add a share of z.
+  /// Without pixels nothing is lost.
   position_error rounding() const {
+    if (size() == 0) return {};
     const auto square = [](double a) { return a * a; };
     const auto widest = [](double c, double n) { return std::fmax(std::fabs(c), std::fabs(n - 1 - c)); };
     const double slant =

@@ -94,8 +94,8 @@ struct ray_image {
     detail::check_image(pixels, width, height, row, scale, nearest, farthest);
     if (rays == nullptr) detail::refuse_source("a ray image has no rays: they are null");
   }
-  /// The roundings of scale, ray and two products.
-  position_error rounding() const { return {0, 4 * 0x1.001p-24}; }
+  /// The roundings of scale, ray and two products. Without pixels nothing is lost.
+  position_error rounding() const { return {0, size() == 0 ? 0 : 4 * 0x1.001p-24}; }
 
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(pixels, std::size_t(row) * height)); }
   /// The memory that points `begin` to `end - 1` need: their rows.
