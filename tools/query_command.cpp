@@ -215,6 +215,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   for (std::size_t k = 0; k < robot_there->without_cells.size(); ++k)
     if (const std::string& why_not = robot_there->without_cells[k]; !why_not.empty())
       report.notes.push_back("--cells: link " + io::quoted(bodies[k].name) + ": " + why_not);
+  if (asked.cells && !model.cells) report.notes.push_back("--cells: none are made, because the host looks into none");
   report.upload += robot_there->upload;
   if (report.found.unseen == 0)  // otherwise it is unknown which of them were seen
     for (const observation& cloud : clouds.files) cloud.recount(report.found.result);
