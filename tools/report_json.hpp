@@ -13,8 +13,8 @@
 
 using json = nlohmann::ordered_json;  // keys in the manual's order
 
-inline constexpr const char* reasons[clearance::drop_reasons] = {"none",         "not_finite", "missing",  "saturated",
-                                                                 "out_of_range", "masked",     "too_close"};
+inline constexpr const char* reasons[clearance::drop_reasons] = {"none",         "not_finite", "missing",   "saturated",
+                                                                 "out_of_range", "masked",     "too_close", "cropped"};
 
 /// The pixel of a point of an image.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> pixel(const observation& cloud, std::uint32_t point);

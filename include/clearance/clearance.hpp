@@ -8,6 +8,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/compacted.hpp>
 #include <clearance/deadline.hpp>
+#include <clearance/frames/cropped_clouds.hpp>
 #include <clearance/gradient.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/motion_clearance.hpp>

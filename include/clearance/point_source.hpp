@@ -17,9 +17,18 @@
 namespace clearance {
 
 /// Why a record or pixel gave no point. `too_close`: something is there, nearer than the sensor can measure (REP 117);
-/// nothing is `free` then.
-enum class drop_reason : std::uint8_t { none, not_finite, missing, saturated, out_of_range, masked, too_close };
-inline constexpr int drop_reasons = 7;
+/// nothing is `free` then. `cropped`: it is no obstacle by its place.
+enum class drop_reason : std::uint8_t {
+  none,
+  not_finite,
+  missing,
+  saturated,
+  out_of_range,
+  masked,
+  too_close,
+  cropped
+};
+inline constexpr int drop_reasons = 8;
 
 /// The answer of a point source for one index: a position in its own frame, or why there is none.
 struct sample {
@@ -180,8 +189,8 @@ concept image_source = point_source<S> && requires(const S s) {
 CLEARANCE_SOURCE_CAN(image, columns, image_source, "std::uint32_t columns() const");
 
 /// A source of points in some range.
-/// Law: `beyond(i, p)` is not more metres than p, where point i is `out_of_range`, is from that range. Without it such
-/// a point is out, however uncertain it is.
+/// Law: `beyond(i, p)` is not more metres than p, where point i is `out_of_range` or `cropped`, is from the places that
+/// count. Without it such a point is out, however uncertain it is.
 template <class S>
 concept ranged_source = point_source<S> && requires(const S s, std::size_t i, vec3 p) {
   { s.beyond(i, p) } -> std::same_as<real>;
@@ -351,8 +360,8 @@ position_error rounding_of(const S& source) {
   }
 }
 
-/// How far p, where point i of a source is `out_of_range`, is from its range, in metres: not more than it is. Infinite
-/// if neither the source nor its filter says: such a point is out, however uncertain it is.
+/// How far p, where point i of a source is `out_of_range` or `cropped`, is from what counts, in metres: not more than
+/// it is. Infinite if neither the source nor its filter says: such a point is out, however uncertain it is.
 template <point_source S>
 CLEARANCE_HD real beyond_range(const S& s, std::size_t i, vec3 p) {
   if constexpr (ranged_source<S>)

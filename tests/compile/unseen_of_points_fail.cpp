@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: unseen is asked about depth_image and ray_image, or masked or uncertain ones
+// expected-error: unseen is asked about depth_image and ray_image, or masked, cropped or uncertain ones
 #include <clearance/make_model.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
 #include <clearance/questions/unseen.hpp>

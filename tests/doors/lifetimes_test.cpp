@@ -3,6 +3,7 @@
 // it under the address sanitizer, too, which sees freed memory.
 #include "forms/forms.hpp"
 
+#include <clearance/frames/cropped_clouds.hpp>
 #include <clearance/frames/mapped_clouds.hpp>
 #include <clearance/io/joint_motion.hpp>
 #include <clearance/io/part_radii.hpp>
@@ -117,6 +118,10 @@ concept hides = requires(C&& c, const point_label* l) { clearance::masked_clouds
 static_assert(hides<points&> && hides<point_span> && hides<std::vector<point_span>>);
 static_assert(hides<std::vector<clearance::placed<point_span>>> && hides<std::tuple<points>&>);
 static_assert(!hides<points> && !hides<std::tuple<points>> && !hides<std::vector<points>>);
+template <class C>
+concept crops = requires(C&& c, const clearance::crop& w) { clearance::cropped_clouds(static_cast<C&&>(c), w); };
+static_assert(crops<points&> && crops<point_span> && crops<std::vector<point_span>> && crops<std::tuple<points>&>);
+static_assert(!crops<points> && !crops<std::tuple<points>> && !crops<std::vector<points>>);
 using tree = clearance::io::kinematic_tree;
 struct robot_with_parts {
   struct part {

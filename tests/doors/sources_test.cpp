@@ -6,6 +6,7 @@
 #include <clearance/chunked_query.hpp>
 #include <clearance/compacted.hpp>
 #include <clearance/deadline.hpp>
+#include <clearance/frames/cropped_clouds.hpp>
 #include <clearance/make_model.hpp>
 #include <clearance/points/camera.hpp>
 #include <clearance/points/strided_points.hpp>
@@ -109,6 +110,13 @@ TEST_CASE("a point source whose members contradict one another is refused before
                                                        {"no labels", [](auto& s) { s.labels = nullptr; }},
                                                        {"no points", [](auto& s) { s.source.points = nullptr; }},
                                                    });
+  asked(cropped(point_span(points), crop().height(-1, 1).seen_from(poses[0])),
+        {
+            {"too many boxes", [](auto& s) { s.boxes.count = 9; }},
+            {"a corner", [](auto& s) { s.boxes.box[0].upper.z = not_a_number; }},
+            {"a box at no place", [](auto& s) { s.boxes.box[0].box_from_cloud.translation.x = infinity; }},
+            {"no points to crop", [](auto& s) { s.source.points = nullptr; }},
+        });
   const std::vector<real> radii(8, 0.01f);
   any_noise noise;
   noise.kind = noise_kind::radii, noise.radii = point_radii(radii);

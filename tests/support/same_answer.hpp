@@ -8,18 +8,25 @@
 
 namespace testing {
 
+/// Counts by drop_reason. A reason that is newer than the kept digests is no number while it dropped nothing.
+struct counts_by_reason {
+  const std::uint64_t (&dropped)[clearance::drop_reasons];
+};
+
 /// Calls `f` with all members of a result. Those of more than eight, and of derived ones, are named here.
 template <class T, class F>
 void with_members(const T& a, const F& f) {
   if constexpr (std::is_same_v<T, clearance::min_distance_result>)
     f(a.state, a.distance, a.lower, a.upper, a.cloud, a.point, a.part, a.primitive, a.at, a.nearest, a.normal, a.seen,
-      a.valid, a.dropped);
+      a.valid, counts_by_reason{a.dropped});
   else if constexpr (std::is_same_v<T, clearance::supported_distance>)
     f(a.state, a.distance, a.lower, a.cloud, a.point, a.part, a.primitive, a.isolated, a.nearest_isolated, a.counts);
   else if constexpr (std::is_same_v<T, clearance::certain_pair>)
     f(static_cast<const clearance::part_witness&>(a), a.lower, a.shares, a.to_ball);
+  else if constexpr (requires { a.out_of_view; })  // unseen_part
+    f(static_cast<const clearance::part_witness&>(a), a.lower, a.out_of_view, a.to_edge);
   else if constexpr (std::is_same_v<T, clearance::point_counts>)
-    f(a.seen, a.valid, a.dropped);
+    f(a.seen, a.valid, counts_by_reason{a.dropped});
   else
     std::apply(f, clearance::detail::members_of(a));
 }
@@ -30,6 +37,9 @@ template <class T, class F>
 void for_each_number(const T& a, const F& f) {
   if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     f(a);
+  } else if constexpr (std::is_same_v<T, counts_by_reason>) {
+    for (int k = 0; k < clearance::drop_reasons; ++k)
+      if (k <= int(clearance::drop_reason::too_close) || a.dropped[k] != 0) f(a.dropped[k]);
   } else if constexpr (std::is_array_v<T>) {
     for (const auto& x : a) for_each_number(x, f);
   } else if constexpr (requires { a.begin(), a.size(); }) {

@@ -10,6 +10,17 @@ namespace clearance {
 
 namespace detail {
 
+/// What `f` makes of a source, or of a source and its pose.
+template <class F, point_source S>
+auto made_of(F& f, const S& source, const Eigen::Isometry3d& world_from_cloud) {
+  if constexpr (std::invocable<F&, const S&, const Eigen::Isometry3d&>)
+    return f(source, world_from_cloud);
+  else
+    return f(source);
+}
+template <class F, point_source S>
+using made_type = decltype(made_of(std::declval<F&>(), std::declval<const S&>(), Eigen::Isometry3d()));
+
 /// The type that clouds become, and how. This is for ranges:
 template <class T, class F>
 struct mapped {
@@ -23,8 +34,8 @@ struct mapped {
 };
 template <point_source S, class F>
 struct mapped<S, F> {
-  using type = std::invoke_result_t<F&, const S&>;
-  static type of(const S& source, F& f) { return f(source); }
+  using type = made_type<F, S>;
+  static type of(const S& source, F& f) { return made_of(f, source, Eigen::Isometry3d::Identity()); }
 };
 template <point_container C, class F>
 struct mapped<C, F> {
@@ -35,7 +46,7 @@ struct mapped<C, F> {
 template <point_source S, class F>
 struct mapped<placed<S>, F> {
   using type = placed<typename mapped<S, F>::type>;
-  static type of(const placed<S>& cloud, F& f) { return {f(cloud.source), cloud.pose}; }
+  static type of(const placed<S>& cloud, F& f) { return {made_of(f, cloud.source, cloud.pose), cloud.pose}; }
 };
 template <class... T, class F>
 struct mapped<std::tuple<T...>, F> {
@@ -80,8 +91,9 @@ concept owning_clouds = keeps_points<T>;
 
 }  // namespace detail
 
-/// Clouds (any that a call takes) with `f(source)` in the place of each source, in order. They are views: what they
-/// view must outlive them. `F` must not be a lambda, because its name becomes part of a kernel's.
+/// Clouds (any that a call takes) with `f(source)`, or `f(source, world_from_cloud)`, in the place of each source, in
+/// order. They are views: what they view must outlive them. `F` must not be a lambda, because its name becomes part of
+/// a kernel's.
 template <class Clouds, class F>
 auto mapped_clouds(const Clouds& clouds, F f) {
   static_assert(explain_clouds<Clouds>());

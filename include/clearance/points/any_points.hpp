@@ -3,6 +3,7 @@
 // A source of any kind, for programs that learn the kind while they run: a question is compiled once for all of them.
 
 #include <clearance/points/arrays.hpp>
+#include <clearance/points/cropped.hpp>
 #include <clearance/points/tile.hpp>
 
 #include <cstring>
@@ -84,7 +85,7 @@ class any_points {
 
   const functions* of_;
   std::size_t begin_ = 0, size_;
-  alignas(16) std::byte view_[112] = {};
+  alignas(16) std::byte view_[112 + sizeof(crop_boxes)] = {};
 };
 
 static_assert(surveyed_source<any_points> && unfiltered_source<any_points>);

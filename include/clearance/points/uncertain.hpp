@@ -18,7 +18,7 @@ struct cloud_uncertainty {
 /// A source whose point i may be anywhere in a ball around it. The radius is that of the noise, `shift + turn |p|`
 /// (from the sensor), and `max_speed * age`, rounded up. Around capsules radii add. A radius of 1e6 m, a negative one
 /// and NaN say nothing: the point may be anywhere, which counts as `too_close`, and nothing is free then. A point that
-/// was measured out of the source's range counts if its ball reaches into it.
+/// was measured out of the source's range, or of what its crop keeps, counts if its ball reaches into it.
 ///
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
@@ -66,7 +66,8 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
 
   CLEARANCE_HD sample operator[](std::size_t i) const {
     sample s = source[i];
-    if (s.dropped == drop_reason::out_of_range && may_be_in_range(i, s.position)) s.dropped = drop_reason::none;
+    if ((s.dropped == drop_reason::out_of_range || s.dropped == drop_reason::cropped) && may_be_in_range(i, s.position))
+      s.dropped = drop_reason::none;
     if (!s.valid()) return s;
     if (!bounded(radius(i, s.position))) s.dropped = drop_reason::too_close;
     return s;
@@ -102,8 +103,9 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   {
     std::uint32_t dropped_now[drop_reasons] = {};
     if (!source.survey(begin, box, dropped_now)) return false;
-    if (dropped_now[int(drop_reason::out_of_range)] != 0) return false;  // some of them may be in range
-    if (!(box.lower.x <= box.upper.x)) {                                 // no point
+    if (dropped_now[int(drop_reason::out_of_range)] + dropped_now[int(drop_reason::cropped)] != 0)
+      return false;                       // some of them may be in range
+    if (!(box.lower.x <= box.upper.x)) {  // no point
       widest = 0;
     } else {
       const vec3 sensor = sensor_of(source);

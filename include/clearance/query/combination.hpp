@@ -5,6 +5,7 @@
 #include <clearance/backends/plain.hpp>
 #include <clearance/concepts.hpp>
 #include <clearance/frames/clouds.hpp>
+#include <clearance/points/cropped.hpp>
 #include <clearance/points/masked.hpp>
 #include <clearance/points/uncertain.hpp>
 
@@ -36,7 +37,7 @@ struct none {
     }                                                                               \
   }
 
-CLEARANCE_REFUSAL(not_images, "unseen is asked about depth_image and ray_image, or masked or uncertain ones");
+CLEARANCE_REFUSAL(not_images, "unseen is asked about depth_image and ray_image, or masked, cropped or uncertain ones");
 CLEARANCE_REFUSAL(not_points, CLEARANCE_STANDS_FOR_MORE);
 CLEARANCE_REFUSAL(device_memory,
                   "these points are in a device's memory, which a host cannot read: ask a device{} about them, or copy "
@@ -72,11 +73,13 @@ CLEARANCE_REFUSAL(room_in_pieces,
 
 namespace detail {
 
-/// Does a source say what it hides? So do masked and uncertain images.
+/// Does a source say what it hides? So do masked, cropped and uncertain images.
 template <class S>
 inline constexpr bool is_image = seeing_image<S>;
-template <seeing_image S>
-inline constexpr bool is_image<masked<S>> = true;
+template <class S>
+inline constexpr bool is_image<masked<S>> = is_image<S>;
+template <class S>
+inline constexpr bool is_image<cropped<S>> = is_image<S>;
 template <class S, class N>
 inline constexpr bool is_image<uncertain<S, N>> = is_image<S>;
 

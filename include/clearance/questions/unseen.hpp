@@ -6,6 +6,7 @@
 #include <clearance/backends/readback.hpp>
 #include <clearance/ground/borrowed.hpp>
 #include <clearance/minimum/merge.hpp>
+#include <clearance/points/cropped.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/hidden.hpp>
 #include <clearance/points/ray_image.hpp>
@@ -200,10 +201,10 @@ struct pinhole_view {
   }
 };
 
-/// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` ones, or
-/// `uncertain` ones of those: then hidden is what may be hidden, so that the state is not `unknown` but `possible`.
-/// Refused: depths that are no range, a ray image without `half_pixel`, not one label per pixel, and radii as
-/// in_collision.
+/// How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or `masked` or
+/// `cropped` ones (what is cropped hides as before), or `uncertain` ones of those: then hidden is what may be hidden,
+/// so that the state is not `unknown` but `possible`. Refused: depths that are no range, a ray image without
+/// `half_pixel`, not one label per pixel, and radii as in_collision.
 struct unseen {
   hiding room = {};                   ///< Where hidden room begins and ends.
   double half_pixel = 0;              ///< What `half_pixel_of` says of a ray image's table; 0 without ray images.
@@ -293,14 +294,15 @@ class unseen::engine {
     minima_ = memory_.template space<part_minimum>(searches * parts).data();
     if (places_) nearest_ = memory_.template space<part_witness>(cameras * parts).data();
     for_each_cloud(images, [&]<class S>(const S& given, const Eigen::Isometry3d& pose) {
-      const auto image = as_measured{}(given);
-      if constexpr (seeing_image<decltype(as_measured{}(given))>) {
+      const auto image = uncropped{}(as_measured{}(given));
+      using kind = std::remove_const_t<decltype(image)>;
+      if constexpr (seeing_image<kind>) {
         begin_camera(poses, given, image, pose, labels, cameras);
         if (labels != nullptr) labels += image.size();
-      } else if constexpr (detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>) {
+      } else if constexpr (detail::is_masked<kind>) {
         if (labels != nullptr)
           throw std::invalid_argument("clearance: unseen has labels, and so has cloud " + std::to_string(used_));
-        begin_camera(poses, given, image.source, pose, image.labels, cameras);
+        begin_camera(poses, given, uncropped{}(image.source), pose, image.labels, cameras);
       } else {
         refuse(std::uint32_t(used_));
       }
@@ -337,7 +339,7 @@ class unseen::engine {
   static bool any_masked(const Clouds& clouds) {
     bool any = false;
     for_each_cloud(clouds, [&](const auto& given, const Eigen::Isometry3d&) {
-      any = any || detail::is_masked<std::remove_cvref_t<decltype(as_measured{}(given))>>;
+      any = any || detail::is_masked<std::remove_cvref_t<decltype(uncropped{}(as_measured{}(given)))>>;
     });
     return any;
   }

@@ -156,7 +156,8 @@ class clearance_node : public rclcpp::Node {
 
   void write(const clearance::min_distance_per_part_result& found, Clearance& out) const {
     constexpr std::uint8_t states[] = {Clearance::FREE, Clearance::POSSIBLE, Clearance::COLLISION, Clearance::NO_DATA};
-    constexpr const char* reasons[] = {"", "not_finite", "missing", "saturated", "out_of_range", "masked", "too_close"};
+    constexpr const char* reasons[] = {"",       "not_finite", "missing", "saturated", "out_of_range",
+                                       "masked", "too_close",  "cropped"};
     static_assert(std::size(reasons) == clearance::drop_reasons);
     const clearance::min_distance_result& r = found.all;
     out.state = states[int(r.state)], out.distance = r.distance, out.lower = r.lower, out.upper = r.upper;
