@@ -34,6 +34,29 @@ struct forms_of {
   static constexpr bool by_deadline = in_pieces && clearance::partial_question<Q>;
 };
 
+/// Asks a robot on a backend in each form after one call, in turn: prepared, twice; by a deadline that is far away; in
+/// chunks, twice. Each has the bits of the host's one call about `model`, which is `expected`.
+template <class On, class Robot, class Model, class Q>
+void check_forms(const On& on, const Robot& robot, const Model& model, const Q& q, const moving_frames& f,
+                 const typename Q::result& expected, verdict& v, const std::string& what) {
+  clearance::query prepared(on, robot, q);
+  v.require(same_answer(expected, typename Q::result(prepared(f.s.poses, f.here()))), what, ": prepared");
+  v.require(same_answer(expected, typename Q::result(prepared(f.s.poses, f.here(), q))), what, ": asked again");
+  if constexpr (forms_of<Q>::by_deadline) {
+    auto known = ask_by(prepared, f.s.poses, f.here(), std::chrono::hours(1), q, {.piece = 999});
+    v.require(known.unseen == 0 && same_answer(expected, known.result), what, ": by a deadline");
+  }
+  if constexpr (forms_of<Q>::in_pieces) {
+    const auto cloud = clearance::point_span(f.points[0]);
+    const auto of_one = ask(clearance::host{}, model, f.s.poses, cloud, f.here()[0].pose, q);
+    clearance::chunked chunks(cloud, 4096);
+    clearance::chunked_query by_chunks(on, robot, q);
+    for (const char* time : {"first", "second"})
+      v.require(same_answer(of_one, by_chunks(f.s.poses, chunks, f.here()[0].pose)), what, ": in chunks, the ", time,
+                " time");
+  }
+}
+
 /// Calls `f(name, question)` for each question about inner spheres.
 template <class F>
 void for_each_question(const F& f) {

@@ -18,23 +18,7 @@ TEST_CASE("On the host, prepared questions, chunks and complete deadlines give t
   std::size_t asked = 0;
   ask_everything([&]<class Q>(const char* name, const Q& q, const auto& model, const moving_frames& f) {
     const std::string what = std::string(name) + ", frame " + std::to_string(f.number);
-    const auto once = ask(host{}, model, f.s.poses, f.here(), q);
-    clearance::query prepared(host{2}, model, q);
-    v.require(same_answer(once, typename Q::result(prepared(f.s.poses, f.here()))), what, ": prepared");
-    v.require(same_answer(once, typename Q::result(prepared(f.s.poses, f.here(), q))), what, ": asked again");
-    if constexpr (forms_of<Q>::by_deadline) {
-      auto known = ask_by(prepared, f.s.poses, f.here(), std::chrono::hours(1), q, {.piece = 999});
-      v.require(known.unseen == 0 && same_answer(once, known.result), what, ": by a deadline");
-    }
-    if constexpr (forms_of<Q>::in_pieces) {
-      const auto cloud = clearance::point_span(f.points[0]);
-      const auto of_one = ask(host{}, model, f.s.poses, cloud, f.here()[0].pose, q);
-      clearance::chunked chunks(cloud, 4096);
-      clearance::chunked_query by_chunks(host{}, model, q);
-      for (const char* time : {"first", "second"})
-        v.require(same_answer(of_one, by_chunks(f.s.poses, chunks, f.here()[0].pose)), what, ": in chunks, the ", time,
-                  " time");
-    }
+    check_forms(host{2}, model, model, q, f, ask(host{}, model, f.s.poses, f.here(), q), v, what);
     ++asked;
   });
   CHECK(asked == 6 * 18);

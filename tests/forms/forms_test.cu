@@ -22,22 +22,10 @@ TEST_CASE("One call, prepared questions and two devices give the bits of the hos
     const auto there = model.on(gpu);
     const auto expected = ask(host{}, model, f.s.poses, f.here(), q);
     v.require(same_answer(expected, ask(gpu, there, f.s.poses, f.here(), q)), what, ": once");
-    clearance::query prepared(gpu, there, q);
-    for (const char* time : {"cold", "warm"})
-      v.require(same_answer(expected, typename Q::result(prepared(f.s.poses, f.here()))), what, ": ", time);
+    check_forms(gpu, there, model, q, f, expected, v, what);
     if constexpr (forms_of<Q>::in_pieces) {
       const auto on_both = model.on(two);
       v.require(same_answer(expected, ask(two, on_both, f.s.poses, f.here(), q)), what, ": two devices");
-      clearance::chunked chunks(clearance::point_span(f.points[0]), 4096);
-      clearance::chunked_query by_chunks(gpu, there, q);
-      const auto of_one = ask(host{}, model, f.s.poses, clearance::point_span(f.points[0]), f.here()[0].pose, q);
-      for (const char* time : {"first", "second"})
-        v.require(same_answer(of_one, by_chunks(f.s.poses, chunks, f.here()[0].pose)), what, ": in chunks, the ", time,
-                  " time");
-    }
-    if constexpr (forms_of<Q>::by_deadline) {
-      auto known = ask_by(prepared, f.s.poses, f.here(), std::chrono::hours(1), q, {.piece = 999});
-      v.require(known.unseen == 0 && same_answer(expected, known.result), what, ": by a deadline");
     }
     ++asked;
   };

@@ -68,23 +68,7 @@ void check_every_question(const B& there, verdict& v) {
     const auto expected = ask(host{}, model, f.s.poses, f.here(), q);
     v.require(same_answer(expected, ask(on, robot, f.s.poses, f.here(), q)), what, ": once");
     walks[name] += counted.count() - before;
-    clearance::query prepared(on, robot, q);
-    for (const char* time : {"first", "second"})
-      v.require(same_answer(expected, typename Q::result(prepared(f.s.poses, f.here()))), what, ": prepared, the ",
-                time, " time");
-    if constexpr (forms_of<Q>::by_deadline) {
-      auto known = ask_by(prepared, f.s.poses, f.here(), std::chrono::hours(1), q, {.piece = 999});
-      v.require(known.unseen == 0 && same_answer(expected, known.result), what, ": by a deadline");
-    }
-    if constexpr (forms_of<Q>::in_pieces) {
-      const auto cloud = clearance::point_span(f.points[0]);
-      const auto of_one = ask(host{}, model, f.s.poses, cloud, f.here()[0].pose, q);
-      clearance::chunked chunks(cloud, 4096);
-      clearance::chunked_query by_chunks(on, robot, q);
-      for (const char* time : {"first", "second"})
-        v.require(same_answer(of_one, by_chunks(f.s.poses, chunks, f.here()[0].pose)), what, ": in chunks, the ", time,
-                  " time");
-    }
+    check_forms(on, robot, model, q, f, expected, v, what);
     ++asked;
   });
   v.require(asked == 6 * 18, asked, " questions");
