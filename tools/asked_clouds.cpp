@@ -32,6 +32,7 @@ void asked_clouds::place(const query_options& asked, const asked_robot& robot, c
     seen.push_back(about_file(cloud.from.file, [&] {
       seen_points made = cloud.seen(carrier, poses);
       rigid(made.pose, "cloud");
+      made.boxes = asked.where.seen_from(made.pose);
       made.off = carried_off(asked, robot, joints, cloud.from.link, carrier, made, off);
       return made;
     }));

@@ -44,18 +44,25 @@ void backend_robot::join(all_ranks& all, const named_values& options) {
 }
 
 double backend_robot::see(const std::vector<seen_points>& clouds) {
-  std::vector<cloud> whole;
+  std::vector<whole_cloud> whole;
   for (const seen_points& seen_cloud : clouds)
     std::visit([&](const auto& source) { whole.push_back(placed{source, seen_cloud.pose}); }, seen_cloud.points);
   if (ranks_) whole = ranks_->share(whole);
+  std::vector<cloud> obstacles;
+  for (std::size_t k = 0; k < clouds.size(); ++k)
+    std::visit(
+        [&](const auto& placed_cloud) {
+          obstacles.push_back(placed{cropped(placed_cloud.source, clouds[k].boxes), placed_cloud.pose});
+        },
+        whole[k]);
 
   stopwatch clock;
   seen_clouds& seen = *seen_;
   seen = {};
-  seen.as_measured = memory_->put(whole);
+  seen.as_measured = memory_->put(obstacles);
   bool some_uncertain = false;
   for (std::size_t k = 0; k < clouds.size(); ++k) {
-    const auto& [points, pose, sensor, off, later] = clouds[k];
+    const auto& [points, pose, sensor, off, later, boxes] = clouds[k];
     cloud_uncertainty at_end = off;
     at_end.age += later;
     some_uncertain = some_uncertain || sensor.kind != noise_kind::none || off.shift > 0 || off.turn > 0 ||

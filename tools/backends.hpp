@@ -3,6 +3,7 @@
 // The command's only way to what the library does on a backend: plain data in and out.
 
 #include <clearance/packing/packing.hpp>
+#include <clearance/points/cropped.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/uncertain.hpp>
@@ -65,7 +66,8 @@ struct seen_points {
   Eigen::Isometry3d pose;  // world-from-points
   clearance::any_noise sensor = {};
   clearance::cloud_uncertainty off = {};
-  double later = 0;  // seconds more until a plan ends
+  double later = 0;                  // seconds more until a plan ends
+  clearance::crop_boxes boxes = {};  // which points are obstacles, as the points see them
 };
 
 struct reply {

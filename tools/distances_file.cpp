@@ -98,12 +98,25 @@ io::scene_points drawn(const query_options& asked, const observation& cloud, con
   io::scene_points made{.name = cloud.name, .points = {}, .pose = seen.pose};
   std::visit(
       [&](const auto& source) {
+        const cropped obstacles(source, seen.boxes);
         for (std::size_t i = 0; i < source.size(); ++i) {
-          const sample s = source[i];
+          const sample s = obstacles[i];
           if (!s.valid()) continue;
           made.points.push_back(s.position);
           if (found) made.colours.push_back(io::distance_colour(found->distance[first + i], blue_at(asked)));
         }
+      },
+      seen.points);
+  return made;
+}
+
+std::vector<vec3> cropped_points(const seen_points& seen) {
+  std::vector<vec3> made;
+  std::visit(
+      [&](const auto& source) {
+        const cropped obstacles(source, seen.boxes);
+        for (std::size_t i = 0; seen.boxes.count != 0 && i < source.size(); ++i)
+          if (const sample s = obstacles[i]; s.dropped == drop_reason::cropped) made.push_back(s.position);
       },
       seen.points);
   return made;

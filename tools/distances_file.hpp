@@ -22,3 +22,6 @@ distances_written write_distances(const query_options& asked, const asked_clouds
 /// point among all clouds' points.
 clearance::io::scene_points drawn(const query_options& asked, const observation& cloud, const seen_points& seen,
                                   const clearance::point_distances* found, std::size_t first);
+
+/// Where the points are that are no obstacles by --crop and the like, in the frame of `seen`.
+std::vector<clearance::vec3> cropped_points(const seen_points& seen);

@@ -105,11 +105,15 @@ void draw(const query_report& report, const asked_robot& robot, poses_of poses, 
   for (std::size_t i = 0; i < clouds.files.size(); ++i) {
     scene.clouds.push_back(drawn(*report.asked, clouds.files[i], clouds.seen[i], distances, first));
     first += clouds.files[i].size();
-    if (!clouds.hidden.empty() && !clouds.hidden[i].empty())  // filtered points are shown in grey
-      scene.clouds.push_back({.name = clouds.files[i].name + " (the robot's own)",
-                              .points = clouds.hidden[i],
+    const auto in_grey = [&](const char* what, const std::vector<vec3>& points) {
+      if (points.empty()) return;
+      scene.clouds.push_back({.name = clouds.files[i].name + what,
+                              .points = points,
                               .pose = clouds.seen[i].pose,
                               .paint = {0.55f, 0.55f, 0.55f, 1}});
+    };
+    if (!clouds.hidden.empty()) in_grey(" (the robot's own)", clouds.hidden[i]);
+    in_grey(" (cropped)", cropped_points(clouds.seen[i]));
   }
 
   if (r.state != state::no_data)

@@ -27,7 +27,7 @@ struct raw_options {
       gltf_up, report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
   std::optional<std::string> unseen, fields;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales,
-      cloud_scales, ranges, sensors, calibrations;
+      cloud_scales, ranges, sensors, calibrations, crops, crops_out, heights, planes;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
        gradient = false, shard = false, is_signed = false, between = false, cells = false;
 };
@@ -128,6 +128,29 @@ void read_deadline(const raw_options& raw, query_options& o) {
                                         to_string(usual_volume(o.model)) + " for --model " + to_string(o.model));
   }
   o.shard = raw.shard;
+}
+
+/// Where obstacles are.
+void read_crop(const raw_options& raw, query_options& o) {
+  const auto each = [](const char* option, const texts& given, std::size_t count, const char* what, const auto& add) {
+    for (const std::string& text : given) {
+      const std::vector<double> values = numbers(option, text, count, what, true);
+      try {
+        add(values);
+      } catch (const std::invalid_argument& error) {
+        throw usage_error(option, without_prefix(error.what()));
+      }
+    }
+  };
+  const auto corner = [](const std::vector<double>& v, int first) {
+    return Eigen::Vector3d(v[std::size_t(first)], v[std::size_t(first) + 1], v[std::size_t(first) + 2]);
+  };
+  constexpr const char* corners = "x0,y0,z0,x1,y1,z1";
+  each("--crop", raw.crops, 6, corners, [&](const auto& v) { o.where.inside(corner(v, 0), corner(v, 3)); });
+  each("--crop-out", raw.crops_out, 6, corners, [&](const auto& v) { o.where.outside(corner(v, 0), corner(v, 3)); });
+  each("--height", raw.heights, 2, "low,high", [&](const auto& v) { o.where.height(v[0], v[1]); });
+  each("--plane", raw.planes, 5, "a,b,c,d,thickness",
+       [&](const auto& v) { o.where.without_plane(corner(v, 0), v[3], v[4]); });
 }
 
 /// What is uncertain about clouds and joints. It is for all clouds, but for --sensor and --calibration.
@@ -280,6 +303,7 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.json = raw.json;
   o.scene = raw.scene;
 
+  read_crop(raw, o);
   read_uncertainty(raw, o);
   read_questions(raw, o);
   check_model(o);
@@ -360,6 +384,14 @@ void add_cloud_options(CLI::App& app, raw_options& raw, asking how) {
                  "Metres per unit of a point cloud (default 1; Zivid's and ZED's millimetres: 0.001)");
   app.add_option("--range", raw.ranges,
                  "near,far: other points do not count (m; along z for images, else from the sensor)");
+  app.add_option("--crop", raw.crops,
+                 "x0,y0,z0,x1,y1,z1: only points in that box (m, in the world; inf has no end) are obstacles. All four "
+                 "of these options may be repeated, to four in all, and the dropped points are counted as cropped");
+  app.add_option("--crop-out", raw.crops_out, "x0,y0,z0,x1,y1,z1: no point in that box is an obstacle");
+  app.add_option("--height", raw.heights, "low,high: only points from low to high along the world's z are obstacles");
+  app.add_option("--plane", raw.planes,
+                 "a,b,c,d,thickness: no point within thickness (m) of the plane ax + by + cz = d of the world is an "
+                 "obstacle, such as a table's: 0,0,1,0.7,0.02");
   app.add_option(
       "--unfold-limit", raw.unfolded,
       "MiB that one compressed cloud or image may become, with all that is made of its points or pixels here (default "

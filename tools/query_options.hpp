@@ -3,6 +3,7 @@
 
 #include "backends.hpp"
 
+#include <clearance/frames/cropped_clouds.hpp>
 #include <clearance/io/error.hpp>
 #include <clearance/io/limits.hpp>
 #include <clearance/io/mesh.hpp>
@@ -111,6 +112,7 @@ struct query_options {
   bool cells = false;          // --cells, the same
   std::size_t nearest = 0;     // --nearest: points to list per part
   double d_max = clearance::infinity;
+  clearance::crop where;                    // --crop, --crop-out, --height, --plane: where obstacles are
   std::optional<double> self_filter;        // --self-filter: points within this many metres are the robot's own
   std::optional<support_asked> support;     // --min-support
   std::optional<joints_off> certain;        // any option about uncertainty was given

@@ -104,11 +104,11 @@ class mpi_ranks final : public all_ranks {
     for (const auto& [name, value] : options) alike_.push_back({name, io::digest_of(value)});
     alike_.push_back({"robot", digest_of(*asked.bodies)});
   }
-  std::vector<cloud> share(const std::vector<cloud>& clouds) override {
+  std::vector<whole_cloud> share(const std::vector<whole_cloud>& clouds) override {
     share_.clear();
     first_.clear();
     std::vector<std::pair<std::string, io::digest>> seen;
-    for (const cloud& one : clouds)
+    for (const whole_cloud& one : clouds)
       std::visit(
           [&](const auto& placed_cloud) {
             seen.push_back(
@@ -208,7 +208,7 @@ class mpi_ranks final : public all_ranks {
   bool parted_ = false, of_spheres_ = true;
   std::size_t parts_ = 0;
   std::vector<std::pair<std::string, io::digest>> alike_;  // what all ranks must have: its name, and its value
-  std::vector<cloud> share_;                               // of each cloud,
+  std::vector<whole_cloud> share_;                         // of each cloud,
   std::vector<std::size_t> first_;                         // and the number of its first point
 };
 

@@ -19,7 +19,7 @@ class all_ranks {
   /// What all ranks must have alike from now on: the robot, and options by name and value.
   virtual void agree_on(const asked_model& asked, const named_values& options) = 0;
   /// This rank's share of the clouds.
-  virtual std::vector<cloud> share(const std::vector<cloud>& clouds) = 0;
+  virtual std::vector<whole_cloud> share(const std::vector<whole_cloud>& clouds) = 0;
 
   /// Each rank calls this after its last question. It waits until all have their answers.
   virtual void part() = 0;

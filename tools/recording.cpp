@@ -385,5 +385,6 @@ std::pair<const observation*, std::uint32_t> merged_cloud::origin(std::uint32_t 
 }
 
 void merged_cloud::recount(min_distance_result& r) const {
-  for (int k = 1; k < drop_reasons; ++k) r.dropped[k] = dropped_[k];
+  for (int k = 1; k < drop_reasons; ++k)
+    if (k != int(drop_reason::cropped)) r.dropped[k] = dropped_[k];  // a crop is of the whole
 }

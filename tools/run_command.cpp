@@ -213,7 +213,12 @@ int run_frames(const query_options& asked) {
                                                       chosen_cache(asked.no_cache, asked.cache).folder()});
 
   int code = 0;
-  double upload = asked.recording.merge ? robot_there->see({merged.finish(moves.poses(0))}) : 0;
+  double upload = 0;
+  if (asked.recording.merge) {
+    seen_points whole = merged.finish(moves.poses(0));
+    whole.boxes = asked.where.seen_from(whole.pose);
+    upload = robot_there->see({whole});
+  }
   asked_clouds clouds;  // the frame's
   svg_frames drawn;
   for (std::size_t k = 0; k < frames.size(); ++k) {

@@ -110,10 +110,9 @@ TEST_CASE("--scene shows the points in the colours of their distances") {
 TEST_CASE("--cells changes no answer, is for --distances, and on the host says that it makes none") {
   const two_boxes q;
   const scratch_file ply(".ply"), other(".ply");
-  const std::string on_host = " --backend host";
   for (const std::string d_max : {"", " --d-max 0.3"}) {
-    auto plain = parsed(run_command(q.ask + on_host + d_max + " --distances " + ply.path)),
-         with = parsed(run_command(q.ask + on_host + d_max + " --cells --distances " + other.path));
+    auto plain = parsed(run_command(q.ask + d_max + " --distances " + ply.path)),
+         with = parsed(run_command(q.ask + d_max + " --cells --distances " + other.path));
     CHECK(with.at("distances").at("points") == 3);
     auto& notes = with.at("notes");
     const auto note = std::find(notes.begin(), notes.end(), "--cells: none are made, because the host looks into none");

@@ -15,8 +15,11 @@ struct min_distance_per_part;
 struct min_distances_per_part;
 }  // namespace clearance
 
-// The command's clouds: as they were measured, with what is uncertain about them, or both kinds.
-using cloud = clearance::any::cloud<clearance::point_span, clearance::depth_image<std::uint16_t>>;
+// The command's clouds: as they are in files; less what is no obstacle, as they were measured; with what is uncertain
+// about them; and both kinds.
+using whole_cloud = clearance::any::cloud<clearance::point_span, clearance::depth_image<std::uint16_t>>;
+using cloud = clearance::any::cloud<clearance::cropped<clearance::point_span>,
+                                    clearance::cropped<clearance::depth_image<std::uint16_t>>>;
 using uncertain_cloud = clearance::any::uncertain_alone<cloud>;
 using either_cloud = clearance::any::uncertain_too<cloud>;
 
