@@ -165,6 +165,11 @@ def depth_image(depth: object, intrinsics: object | None = None, pose: object | 
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
     """
 
+def cropped(cloud: object, *, inside: object | None = None, outside: object | None = None, pose: object | None = None, height: object | None = None, plane: object | None = None) -> Cloud:
+    """
+    The same cloud without points that are no obstacles by their place in the world, which are counted as cropped. Obstacles are inside a box (2, 3), lower and upper corner, and outside another (pose: world-from-box, of both); at a height (low, high); and farther than thickness from plane, (a, b, c, d, thickness), of ax + by + cz = d. Metres. A cloud may be cropped again, by four of these in all.
+    """
+
 def uncertain(cloud: object, noise: object | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
     """
     The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
@@ -235,7 +240,7 @@ class PairDistance:
 
 class DropReason(enum.IntEnum):
     """
-    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
+    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then. cropped: it is no obstacle by its place.
     """
 
     none = 0
@@ -251,6 +256,8 @@ class DropReason(enum.IntEnum):
     masked = 5
 
     too_close = 6
+
+    cropped = 7
 
 class Hiding:
     """Which room behind its pixels an image hides, in metres of z."""

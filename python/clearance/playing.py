@@ -85,6 +85,7 @@ class Watch:
         zero_is_missing=False,
         cloud_scale=1.0,
         camera_info=None,
+        crop=(),
         check=False,
         each=None,
         only=None,
@@ -100,6 +101,10 @@ class Watch:
             )
         if check and (robot.model != "spheres" or isinstance(self.question, _core.MinDistanceSupported)):
             raise ValueError("a check by NumPy needs a robot of spheres, and the nearest of all points")
+        if check and crop:
+            raise ValueError("a check by NumPy is about all points, and crop leaves some out")
+        self.crop = crop
+        self._obstacles(_core.points(np.zeros((0, 3), np.float32)))  # refuse what is no crop before a frame is read
         if not max_age >= 0:
             raise ValueError(f"max_age is {max_age} s; it is 0 or more")
         if not 1e-9 <= cloud_scale <= 1e9:
@@ -291,10 +296,10 @@ class Watch:
             poses = np.stack([self.transforms.at(world, name, stamp, self.max_age) for name in self.robot.parts])
         limits = {"nearest": self.nearest, "farthest": self.farthest}
         if kind == recordings.CLOUD:
-            cloud = _core.points(points, where, zero_is_missing=self.zero_is_missing, **limits)
+            cloud = self._obstacles(_core.points(points, where, zero_is_missing=self.zero_is_missing, **limits))
             seen = {"points": points, "cloud_pose": where}
         else:
-            cloud = _core.depth_image(image, pose=where, **lens, **limits)
+            cloud = self._obstacles(_core.depth_image(image, pose=where, **lens, **limits))
             seen = {"depth": image, "camera_pose": where, **lens}
         result = self.ask(clouds=[cloud], poses=poses)
         self._write(row, result)
@@ -302,7 +307,7 @@ class Watch:
         if short_by is not None:
             # Of depths that may be less, those that may be within `farthest` count.
             near = np.where(image - short_by > self.farthest, np.float32(np.nan), image)
-            cloud = _core.depth_image(near, pose=where, nearest=self.nearest, **lens)
+            cloud = self._obstacles(_core.depth_image(near, pose=where, nearest=self.nearest, **lens))
             self._widen(row, cloud, poses, short_by * _lengths_of_rays(image.shape, **lens))
         if self.check:
             local = scenes.as_points(points) if kind == recordings.CLOUD else _seen_depth(image, lens)
@@ -311,6 +316,11 @@ class Watch:
             if not agree(row):
                 row.say(f"NumPy says {row.checked:.9g} m")
         return Sight(self.robot, poses, result, seen)
+
+    def _obstacles(self, cloud):
+        for each in self.crop:
+            cloud = _core.cropped(cloud, **each)
+        return cloud
 
     def _counting(self, local):
         """Those points, in the sensor's frame, that count."""
@@ -382,6 +392,7 @@ def play(
     farthest=math.inf,
     zero_is_missing=False,
     cloud_scale=1.0,
+    crop=(),
     each=None,
     only=None,
 ):
@@ -397,7 +408,8 @@ def play(
     names, or the values of all. max_age: seconds. Joints and transforms are interpolated at a frame's stamp. What is farther from it is not
     used. camera_info: the topic of the CameraInfo, or {image's topic: topic}; `camera_info` beside the image, unless
     given. nearest, farthest: metres from the sensor between which points count. zero_is_missing: a point at the sensor
-    is none. cloud_scale: metres per unit of the clouds. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
+    is none. cloud_scale: metres per unit of the clouds. crop: arguments of cropped as dicts, such as [{"height": (0.1, 2)}],
+    in the base frame. check: computes each distance again by NumPy, from the spheres; a row that differs says so in its note.
     each: is called with each row that was asked and its Sight, whose scene() can be drawn. only: {(stamp_ns, topic)} of
     the frames that are asked; the rows of others are "unknown".
 
@@ -418,6 +430,7 @@ def play(
         zero_is_missing=zero_is_missing,
         cloud_scale=cloud_scale,
         camera_info=camera_info,
+        crop=crop,
         check=check,
         each=each,
         only=only,

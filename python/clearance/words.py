@@ -6,13 +6,14 @@ import math
 import numpy as np
 
 
-def numbers(text, count, option):
-    """Finite numbers between commas; count None: one or more."""
+def numbers(text, count, option, infinite=False):
+    """Numbers between commas, finite unless infinite is set; count None: one or more."""
     try:
         values = [float(word) for word in text.split(",")]
     except ValueError:
         values = []
-    if not values or count and len(values) != count or not all(map(math.isfinite, values)):
+    wrong = any(map(math.isnan, values)) if infinite else not all(map(math.isfinite, values))
+    if not values or count and len(values) != count or wrong:
         raise ValueError(f"{option} takes {count or 'one or more'} numbers between commas, not {text!r}")
     return values
 

@@ -4,6 +4,7 @@
 
 #include <clearance/any/query.hpp>
 #include <clearance/frames/bracket.hpp>
+#include <clearance/points/cropped.hpp>
 #include <clearance/points/depth_image.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
@@ -11,11 +12,20 @@
 #include <memory>
 #include <optional>
 
-/// Everything that Python may pass as a cloud. On a device the questions are compiled for each.
-using any_cloud =
+/// Everything that Python may pass as a cloud.
+using whole_cloud =
     clearance::any::cloud<clearance::point_span, clearance::strided_points<float>, clearance::strided_points<double>,
                           clearance::depth_image<std::uint16_t>, clearance::depth_image<float>,
                           clearance::ray_image<std::uint16_t>, clearance::ray_image<float>>;
+
+template <class Cloud>
+struct cropped_kinds;
+template <class... S>
+struct cropped_kinds<std::variant<clearance::placed<S>...>> {
+  using type = clearance::any::cloud<clearance::cropped<S>...>;
+};
+/// What is asked about: a cloud that is not cropped has no boxes. On a device the questions are compiled for each kind.
+using any_cloud = cropped_kinds<whole_cloud>::type;
 
 namespace clearance {
 struct certain_distance;

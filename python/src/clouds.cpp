@@ -131,7 +131,10 @@ void limit(Image& image, double nearest, double farthest, bool minus_infinity_is
 
 }  // namespace
 
-any_cloud near_robot(const cloud_object& object, const Eigen::Vector3d& robot) {
+namespace {
+
+/// The cloud with floats relative to a place near the robot.
+whole_cloud relative_to(const cloud_object& object, const Eigen::Vector3d& robot) {
   if (!object.far) return object.cloud;
   auto cloud = std::get<placed<strided_points<double>>>(object.cloud);
   // Coarse, and of what stays where joints move: so each of many configurations has the answer that it has alone.
@@ -144,6 +147,16 @@ any_cloud near_robot(const cloud_object& object, const Eigen::Vector3d& robot) {
   cloud.source.off = frames::pose_error * (cloud.pose.translation().norm() + origin.norm());
   cloud.pose.translation() = cloud.pose * origin;
   return cloud;
+}
+
+}  // namespace
+
+any_cloud near_robot(const cloud_object& object, const Eigen::Vector3d& robot) {
+  return std::visit(
+      [&](const auto& whole) -> any_cloud {
+        return placed{cropped(whole.source, object.where.seen_from(whole.pose)), whole.pose};
+      },
+      relative_to(object, robot));
 }
 
 cloud_object cloud_of_points(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
@@ -256,6 +269,54 @@ cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, 
 
 namespace {
 
+/// So many numbers, in whatever shape.
+std::vector<double> numbers_of(nb::handle given, std::size_t count, const char* wanted) {
+  std::vector<double> made;
+  try {
+    const nb::object flat = nb::module_::import_("numpy").attr("ascontiguousarray")(given, "f8").attr("ravel")();
+    const auto array = nb::cast<nb::ndarray<const double, nb::c_contig>>(flat);
+    made.assign(array.data(), array.data() + array.size());
+  } catch (nb::python_error&) {
+  } catch (const nb::cast_error&) {
+  }
+  if (made.size() != count)
+    throw std::invalid_argument("clearance: " + std::string(wanted) + ", not " + shape_and_type(given));
+  return made;
+}
+
+}  // namespace
+
+cloud_object cropped_of(nb::handle cloud, nb::handle inside, nb::handle outside, nb::handle pose, nb::handle height,
+                        nb::handle plane) {
+  cloud_object* whole = nullptr;
+  if (!nb::try_cast(cloud, whole) || !whole)
+    throw nb::type_error("cropped: cloud is what points(...) or depth_image(...) returns");
+  if (inside.is_none() && outside.is_none() && height.is_none() && plane.is_none())
+    throw std::invalid_argument("clearance: cropped needs inside, outside, height or plane");
+  if (inside.is_none() && outside.is_none() && !pose.is_none())
+    throw std::invalid_argument("clearance: pose is that of the box of inside or outside, and neither is given");
+  cloud_object made = *whole;
+  const Eigen::Isometry3d world_from_box = pose_of(pose, "pose");
+  const auto box = [&](nb::handle given, const char* wanted, auto add) {
+    if (given.is_none()) return;
+    const auto v = numbers_of(given, 6, wanted);
+    (made.where.*add)({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, world_from_box);
+  };
+  box(inside, "inside is the lower and the upper corner of a box, an array of shape (2, 3)", &crop::inside);
+  box(outside, "outside is the lower and the upper corner of a box, an array of shape (2, 3)", &crop::outside);
+  if (!height.is_none()) {
+    const auto v = numbers_of(height, 2, "height is (low, high), metres");
+    made.where.height(v[0], v[1]);
+  }
+  if (!plane.is_none()) {
+    const auto v = numbers_of(plane, 5, "plane is (a, b, c, d, thickness), of ax + by + cz = d");
+    made.where.without_plane({v[0], v[1], v[2]}, v[3], v[4]);
+  }
+  return made;
+}
+
+namespace {
+
 /// A radius for each point, where they lie.
 point_radii radii_of(nb::handle given, cloud_doubts& doubts) {
   constexpr const char* wanted =
@@ -334,6 +395,14 @@ void bind_clouds(nb::module_& m) {
       "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
       "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
       "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
+  m.def(
+      "cropped", &cropped_of, nb::arg("cloud"), nb::kw_only(), nb::arg("inside").none() = nb::none(),
+      nb::arg("outside").none() = nb::none(), nb::arg("pose").none() = nb::none(),
+      nb::arg("height").none() = nb::none(), nb::arg("plane").none() = nb::none(),
+      "The same cloud without points that are no obstacles by their place in the world, which are counted as cropped. "
+      "Obstacles are inside a box (2, 3), lower and upper corner, and outside another (pose: world-from-box, of both); "
+      "at a height (low, high); and farther than thickness from plane, (a, b, c, d, thickness), of ax + by + cz = d. "
+      "Metres. A cloud may be cropped again, by four of these in all.");
   m.def(
       "uncertain", &uncertain_of, nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(),
       nb::arg("shift") = 0.0, nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,

@@ -5,6 +5,8 @@
 #include "asker.hpp"
 #include "seen_array.hpp"
 
+#include <clearance/frames/cropped_clouds.hpp>
+
 #include <nanobind/nanobind.h>
 
 #include <optional>
@@ -21,7 +23,8 @@ struct cloud_doubts {
 
 /// A cloud with its pose, and what keeps its memory alive.
 struct cloud_object {
-  any_cloud cloud;
+  whole_cloud cloud;
+  clearance::crop where;  ///< Its points that are obstacles, in world coordinates.
   std::optional<cloud_doubts> doubts;
   int device = on_the_host;  ///< The CUDA device where the array lies.
   bool far = false;          ///< Doubles, of which a place near the robot is subtracted before they become floats.
@@ -29,13 +32,17 @@ struct cloud_object {
   nb::object kept, also_kept;
 };
 
-/// For a robot at this place: doubles far from (0, 0, 0) become floats relative to a place near it.
+/// For a robot at this place, cropped: doubles far from (0, 0, 0) become floats relative to a place near it.
 any_cloud near_robot(const cloud_object& cloud, const Eigen::Vector3d& robot);
 
 cloud_object cloud_of_points(nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor,
                              bool zero_is_missing);
 cloud_object depth_of(nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest,
                       double farthest, bool minus_infinity_is_near, nb::handle rays);
+
+/// The same cloud without what is no obstacle by its place.
+cloud_object cropped_of(nb::handle cloud, nb::handle inside, nb::handle outside, nb::handle pose, nb::handle height,
+                        nb::handle plane);
 
 /// The same cloud, whose points may be elsewhere. `noise`: None, one of the library's, or an array of radii.
 cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, double turn, double max_speed, double age);

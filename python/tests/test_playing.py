@@ -201,7 +201,11 @@ def test_topics_and_questions_can_be_said(robot, drive_bag):
     assert all(
         row.dropped["out_of_range"] > 10 and row.checked == pytest.approx(row.distance, abs=1e-5) for row in near
     )
+    high = list(playing.play(drive_bag, robot, topics="/lidar/points", crop=[{"height": (50, 60)}]))
+    assert all(row.state == "no_data" and row.dropped["cropped"] > 10 for row in high)
     for options, says in (
+        ({"crop": [{"height": (2, 1)}]}, "lower end"),
+        ({"crop": [{"height": (1, 2)}], "check": True}, "crop leaves some out"),
         ({"question": clearance.NearestK(3, 1.0)}, "NearestK"),
         ({"topics": "/none"}, "/none is not in the recording"),
         ({"topics": "/tf"}, "is a tf2_msgs/msg/TFMessage"),

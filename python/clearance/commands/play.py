@@ -51,6 +51,30 @@ def add_robot(parser):
     parser.add_argument("--device", default="cpu", help="cpu, or cuda:0 and so on")
 
 
+# As the compiled command has them.
+CROPS = {
+    "--crop": ("X0,Y0,Z0,X1,Y1,Z1", "only points in that box (metres, in the base frame) are obstacles"),
+    "--crop-out": ("X0,Y0,Z0,X1,Y1,Z1", "no point in that box is an obstacle"),
+    "--height": ("LOW,HIGH", "only points from low to high along z are obstacles (--height=-0.1,2)"),
+    "--plane": ("A,B,C,D,T", "no point within t of the plane ax + by + cz = d is an obstacle"),
+}
+
+
+def crops(asked):
+    """Those options as arguments of cropped."""
+
+    def corners(text, option):
+        values = words.numbers(text, 6, option, infinite=True)
+        return [values[:3], values[3:]]
+
+    return [
+        *({"inside": corners(text, "--crop")} for text in asked.crop),
+        *({"outside": corners(text, "--crop-out")} for text in asked.crop_out),
+        *({"height": words.numbers(text, 2, "--height", infinite=True)} for text in asked.height),
+        *({"plane": words.numbers(text, 5, "--plane")} for text in asked.plane),
+    ]
+
+
 def add_frames(parser):
     parser.add_argument(
         "--camera-info", metavar="TOPIC", help="the CameraInfo of the images (default: camera_info beside each)"
@@ -70,6 +94,8 @@ def add_frames(parser):
         "--cloud-scale", type=float, metavar="METRES", help="per unit of the clouds (default: 1)"
     )
     parser.add_argument("--zero-is-missing", action="store_true", help="a point at the sensor is no point")
+    for option, (metavar, what) in CROPS.items():
+        parser.add_argument(option, action="append", default=[], metavar=metavar, help=what)
 
 
 def robot(asked):
@@ -94,6 +120,7 @@ def frames(asked):
         "nearest": asked.nearest,
         "farthest": asked.farthest,
         "zero_is_missing": asked.zero_is_missing,
+        "crop": crops(asked),
         **({} if asked.cloud_scale is None else {"cloud_scale": asked.cloud_scale}),
     }
 
