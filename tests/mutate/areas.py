@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Areas of headers from which mutants are taken evenly, and which tests should see a header, the quickest first.
+"""Areas of headers, and of sources, from which mutants are taken evenly, and which tests should see one, the quickest first.
 
 A test is the path of its source below tests/, without `_test.cpp`. A header's own tests come from the last pattern that
 matches its path below include/clearance/. Headers for devices (.cuh) are left out: no host compiles them.
@@ -7,7 +7,8 @@ matches its path below include/clearance/. Headers for devices (.cuh) are left o
 
 import fnmatch
 
-AREAS = ["ground", "volume", "primitive", "frames", "scan", "answers", "cloud_tree", "io"]
+AREAS = ["ground", "volume", "primitive", "frames", "scan", "answers", "cloud_tree", "io", "solid"]
+COMPILED = {"io": "src/io", "solid": "src/solid"}  # and their sources
 FOLDERS = {"answers": ["questions", "minimum", "pairwise", "pointwise", "concepts"]}  # else a folder of the area's name
 HALF_DEVICE = ["scan/block.cuh"]  # read by kernels alone
 
@@ -74,7 +75,23 @@ TESTS = {
     "cloud_tree/*": ["questions/min_distances"],
     "cloud_tree/host_tree.hpp": ["bounds/bounds", "questions/min_distances"],
     "cloud_tree/tree_view.hpp": ["questions/min_distances", "questions/radii", "cloud_tree/pixel_order"],
+    "solid/*": ["solid/close_mesh", "solid/inside", "packing/pack"],
+    "solid/winding.hpp": ["solid/winding", "solid/inside"],
+    "solid/rays.hpp": ["solid/inside", "solid/close_mesh"],
+    "solid/flood.hpp": ["solid/inside", "solid/close_mesh"],
+    "solid/boundary.hpp": ["solid/cap", "solid/close_mesh"],
+    "solid/polygon.hpp": ["solid/cap", "solid/close_mesh"],
+    "solid/box_tree.hpp": ["solid/mesh_solid", "packing/pack"],
+    "solid/mesh_solid.hpp": ["solid/mesh_solid", "packing/pack"],
+    "solid/pack.hpp": ["packing/pack", "packing/several"],
+    "solid/eight.hpp": ["packing/eight", "packing/pack"],
     "io/*": ["io/robot", "io/mesh", "io/robot_damage"],
+    "io/compressed_depth.hpp": ["io/compressed_depth"],
+    "io/file_beside.hpp": ["io/gltf", "io/mesh_paths"],
+    "io/glb_writer.hpp": ["io/scene"],
+    "io/spheres_yaml.hpp": ["io/spheres"],
+    "io/mesh_dae.hpp": ["io/mesh", "io/mesh_damage"],
+    "io/mesh_gltf.hpp": ["io/gltf", "io/mesh_damage"],
     "io/cloud*.hpp": ["io/cloud", "io/text_lines"],
     "io/field*.hpp": ["io/fields_file"],
     "io/gltf*.hpp": ["io/gltf", "io/mesh_damage", "io/scene"],
@@ -125,17 +142,18 @@ TESTS = {
 
 
 def areas(folder):
-    """The headers of each area, below include/clearance."""
-    return {
-        area: [
-            header
-            for name in FOLDERS.get(area, [area])
-            for header in sorted(str(path.relative_to(folder)) for path in (folder / name).glob("*.hpp"))
-            if header not in HALF_DEVICE
-        ]
-        for area in AREAS
-    }
+    """The headers of each area, below include/clearance (`folder`), and its sources, below the checkout (src/...)."""
+    root = folder.parents[1]
+
+    def of(area):
+        headers = [path.relative_to(folder) for name in FOLDERS.get(area, [area]) for path in sorted((folder / name).glob("*.hpp"))]
+        sources = [path.relative_to(root) for path in sorted((root / COMPILED[area]).glob("*.[ch]pp"))] if area in COMPILED else []
+        return [str(path) for path in headers + sources if str(path) not in HALF_DEVICE]
+
+    return {area: of(area) for area in AREAS}
 
 
 def tests_of(header):
+    """A source has the tests of a header of its name."""
+    header = header.removeprefix("src/").removesuffix(".cpp").removesuffix(".hpp") + ".hpp"
     return [tests for pattern, tests in TESTS.items() if fnmatch.fnmatch(header, pattern)][-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which places of a header can be changed, and into what."""
+"""Which places of a header, or of a source below src/, can be changed, and into what."""
 
 import dataclasses
 import functools
@@ -26,17 +26,27 @@ INTEGER = re.compile(r"(?<![\w.'])(\d+)(?=[uU]?(?![\w.']))")
 FLOAT = re.compile(r"(?<![\w.])((?:0x[\da-f.]+p[+-]?\d+|\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)f?)(?![\w.])")
 
 
+def path_of(folder, header):
+    """`folder`: include."""
+    return folder.parent / header if header.startswith("src/") else folder / "clearance" / header
+
+
 @dataclasses.dataclass(frozen=True)
 class Mutant:
     folder: pathlib.Path = dataclasses.field(repr=False)
-    header: str  # below include/clearance
+    header: str  # below include/clearance; or a source: src/...
     at: int
     was: str
     now: str
 
     @functools.cached_property
     def before(self):
-        return (self.folder / "clearance" / self.header).read_text()
+        return path_of(self.folder, self.header).read_text()
+
+    @property
+    def compiled(self):
+        """Is it in what src/ compiles once?"""
+        return self.header.startswith("src/")
 
     @functools.cached_property
     def change(self):
@@ -92,7 +102,7 @@ def code_of(text):
 def compiled_lines(folder, path):
     """Numbers of the lines that the host compiles: the preprocessor says."""
     command = [os.environ.get("CXX", "g++"), "-std=c++20", "-E", "-I", str(folder), "-isystem", "/usr/include/eigen3"]
-    command += ["-x", "c++", str(path)]
+    command += ["-I", str(folder.parent / "src"), "-x", "c++", str(path)]
     lines, number, here = set(), 0, False
     for line in subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines():
         if marker := re.match(r'# (\d+) "(.*?)"', line):
@@ -105,8 +115,8 @@ def compiled_lines(folder, path):
 
 
 def sites_of(folder, header):
-    """Every mutant of include/clearance/`header`, in the order of the text."""
-    path = folder / "clearance" / header
+    """Every mutant of a header, or of a source, in the order of the text."""
+    path = path_of(folder, header)
     code, compiled = code_of(path.read_text()), compiled_lines(folder, path)
     found = []
 

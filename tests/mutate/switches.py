@@ -21,6 +21,8 @@ def room(mutant):
 
 def expressions(folder, mutants):
     """The smallest expression around each mutant's place, as [begin, end) of its header's text. Some have none."""
+    if not mutants:
+        return {}
     sys.path.append("/usr/lib/python3/dist-packages")  # where Debian's is, if this is another Python
     try:
         from clang import cindex
@@ -94,7 +96,7 @@ class Overlay:
 
     def __init__(self, folder, work, numbers):
         self.folder, self.work, self.version = folder, work, 0
-        found = expressions(folder, numbers)
+        found = expressions(folder, [m for m in numbers if not m.compiled])  # others are built one at a time
         self.places = {numbers[m]: (m, *found[m]) for m in numbers if m in found}
         self.write()
 
