@@ -140,12 +140,12 @@ inline offers python_offers() {
   all.uncertain = found_in(between(text, "requires one_of<Q,", ">"), "clearance::(\\w+)");
   return all;
 }
-/// The command registers its questions in CMake, and says in questions/asked.hpp what their clouds are.
+/// The command lists its questions among the units of its CMake file, and says in questions/asked.hpp what their clouds are.
 inline offers command_offers() {
   offers all;
   const std::string list = text_of(testing::checkout("tools/CMakeLists.txt"));
-  all.questions = found_in(between(list, "foreach(question ", ")"), "(\\w+)");
-  all.questions.erase("middle");
+  all.questions = found_in(between(list, "foreach(unit ", ")"), "(\\w+)");
+  for (const char* unit : {"middle", "ways", "demo"}) all.questions.erase(unit);
   std::istringstream lines(text_of(testing::checkout("tools/questions/asked.hpp")));
   for (std::string line; std::getline(lines, line);)
     if (line.starts_with("  requires std::same_as<Q,")) all.uncertain.merge(found_in(line, "clearance::(\\w+)"));
