@@ -3,6 +3,7 @@
 // All headers that a plain C++ compiler takes, except io/, which needs more libraries. A program that includes only the
 // headers it uses compiles faster.
 
+#include <clearance/as_balls.hpp>
 #include <clearance/bvh/build.hpp>
 #include <clearance/bvh/flat_list.hpp>
 #include <clearance/chunked_query.hpp>
@@ -19,6 +20,7 @@
 #include <clearance/points/point_cloud2.hpp>
 #include <clearance/points/point_span.hpp>
 #include <clearance/points/ray_image.hpp>
+#include <clearance/points/solid_balls.hpp>
 #include <clearance/points/strided_points.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/primitive/inner_sphere.hpp>
@@ -44,6 +46,8 @@
 #include <clearance/robot/attached.hpp>
 #include <clearance/robot/model.hpp>
 #include <clearance/seen_and_unseen.hpp>
+#include <clearance/self_distance.hpp>
+#include <clearance/self_distances.hpp>
 #include <clearance/separation.hpp>
 #include <clearance/solid/implicit.hpp>
 #include <clearance/solid/mesh_solid.hpp>

@@ -59,9 +59,10 @@ struct extent {
 
 /// How far from its point a position may be: at most `absolute + relative * (its distance from the source's (0,0,0))`,
 /// in metres. It covers what was lost before the source was made, and what is lost when it is read. The bracket of
-/// every distance carries it.
+/// every distance carries it. What points stand for may also be nearer, by `gap` metres: lower ends carry that.
 struct position_error {
   double absolute = 0, relative = 0;
+  double gap = 0;  ///< Infinite: nothing is certain.
 };
 
 struct capsule;     // concepts/capsule.hpp
@@ -344,7 +345,7 @@ inline void check_range(double nearest, double farthest, const char* what) {
 }  // namespace detail
 
 /// A source's `rounding()`. Every question asks this of every cloud before it reads a point. So it also calls
-/// `check()`, and throws std::invalid_argument itself for an error that is negative or not finite.
+/// `check()`, and throws std::invalid_argument itself for an error that is negative or not finite, or such a gap.
 template <point_source S>
 position_error rounding_of(const S& source) {
   if constexpr (checked_source<S>) source.check();
@@ -354,6 +355,8 @@ position_error rounding_of(const S& source) {
       if (!(x >= 0 && x < double(infinity)))
         detail::refuse_source("a cloud's points are off by up to " + std::to_string(its.absolute) + " m and by " +
                               std::to_string(its.relative) + " of their distance, which must be finite and 0 or more");
+    if (!(its.gap >= 0))
+      detail::refuse_source("the gap of a cloud is " + std::to_string(its.gap) + " m, which must be 0 or more");
     return its;
   } else {
     return {};

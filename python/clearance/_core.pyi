@@ -455,6 +455,10 @@ class UncertaintyShares:
         """The part's gap and tolerance."""
 
     @property
+    def balls(self) -> float:
+        """The cloud's gap, if its points are balls that fill something."""
+
+    @property
     def rounding(self) -> float:
         """What arithmetic may have lost."""
 

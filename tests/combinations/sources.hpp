@@ -37,13 +37,14 @@ struct some_radius {
 using points = clearance::point_span;
 using image = clearance::depth_image<std::uint16_t>;
 using balls = clearance::uncertain<points, some_radius>;
+using full_balls = clearance::solid_balls<clearance::radii_beside<points>>;
 using uncertain_image = clearance::uncertain<image, some_radius>;
 using room = clearance::hidden<image>;
 using uncertain_room = clearance::uncertain<room, some_radius>;
 
 template <class... S>
 struct kinds {};
-using all_kinds = kinds<points, image, listed_samples, balls, uncertain_image, room, uncertain_room>;
+using all_kinds = kinds<points, image, listed_samples, balls, full_balls, uncertain_image, room, uncertain_room>;
 
 template <class S>
 inline constexpr const char* name_of = nullptr;
@@ -55,6 +56,8 @@ template <>
 inline constexpr const char* name_of<listed_samples> = "source of one's own";
 template <>
 inline constexpr const char* name_of<balls> = "balls";
+template <>
+inline constexpr const char* name_of<full_balls> = "full balls";
 template <>
 inline constexpr const char* name_of<uncertain_image> = "uncertain image";
 template <>
@@ -104,7 +107,8 @@ auto common_of(kinds<S...>, Others) {
 template <class Some, class Others>
 using common = decltype(detail::common_of(Some(), Others()));
 
-/// The kinds that are asked in the test. An uncertain image is like balls, but for a question about images.
+/// The kinds that are asked in the test. An uncertain image is like balls, but for a question about images; of full
+/// balls tests/questions/solid_balls_test asks everything.
 template <class Q, form F = form::once>
 using asked_here =
     std::conditional_t<clearance::lists<Q, clearance::of_images>, taken<Q, F>,

@@ -18,6 +18,17 @@ TEST_CASE("every question that a header declares is in the table") {
   CHECK(names == declared_questions(true));
 }
 
+TEST_CASE("every question takes full balls where it takes the balls of uncertain points") {
+  std::map<std::string, std::size_t> taken;
+  for (const cell& c : all_cells())
+    if (c.clouds == name_of<balls> || c.clouds == name_of<full_balls>)
+      taken[c.question + c.poses + c.form + c.backend] += c.why == nullptr ? 1 : 0;
+  for (const auto& [which, kinds] : taken) {
+    INFO(which);
+    CHECK(kinds != 1);
+  }
+}
+
 TEST_CASE("docs/choosing.md has the table of combinations that the questions declare") {
   const std::string table = page_of(all_cells());
   INFO("the table is:\n" << table);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expected-error: the points of this source stand for more (what they hide, where they may be): questions about pairs
+// expected-error: the points of this source stand for more (what they hide, where they may be, how large they are): questions about pairs
 #include <clearance/make_model.hpp>
 #include <clearance/points/uncertain.hpp>
 #include <clearance/primitive/inner_sphere.hpp>

@@ -454,7 +454,9 @@ TEST_CASE("What cannot be is refused with a sentence, and leaves nothing behind"
 namespace {
 
 auto fields(const clearance::point_counts& c) { return std::tuple(c.seen, c.valid, std::span(c.dropped)); }
-auto fields(const clearance::distance_certainty& c) { return std::tuple(c.error.here, c.error.per_metre, c.slop); }
+auto fields(const clearance::distance_certainty& c) {
+  return std::tuple(c.error.here, c.error.per_metre, c.error.gap, c.slop);
+}
 auto fields(const clearance::zone& z) {
   return std::tie(z.points, z.nearest, z.nearest_cloud, z.nearest_point, z.first_cloud, z.first_point);
 }

@@ -25,6 +25,12 @@ void with_members(const T& a, const F& f) {
     f(static_cast<const clearance::part_witness&>(a), a.lower, a.shares, a.to_ball);
   else if constexpr (requires { a.out_of_view; })  // unseen_part
     f(static_cast<const clearance::part_witness&>(a), a.lower, a.out_of_view, a.to_edge);
+  // What clouds with gaps add is left out if it is 0: digests are of before there were such clouds.
+  else if constexpr (std::is_same_v<T, clearance::frames::float_error>)
+    a.gap == 0 ? f(a.here, a.per_metre) : f(a.here, a.per_metre, a.gap);
+  else if constexpr (std::is_same_v<T, clearance::uncertainty_shares>)
+    a.balls == 0 ? f(a.noise, a.calibration, a.time, a.joints, a.delay, a.gap, a.rounding)
+                 : f(a.noise, a.calibration, a.time, a.joints, a.delay, a.gap, a.balls, a.rounding);
   else if constexpr (std::is_same_v<T, clearance::point_counts>)
     f(a.seen, a.valid, counts_by_reason{a.dropped});
   else

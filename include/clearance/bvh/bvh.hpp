@@ -41,6 +41,7 @@ struct bvh_view {
   const std::uint32_t* ids;  ///< Position of each primitive in the user's array.
   std::uint32_t levels, widest;
   std::uint32_t node_count;  ///< Parents come before their children, level by level, so the first nodes are the top.
+  std::uint32_t primitive_count;
 
   CLEARANCE_HD node_type root() const { return 0; }
   CLEARANCE_HD bool is_leaf(node_type n) const { return nodes[n].is_leaf(); }
@@ -69,7 +70,14 @@ struct bvh {
   std::uint32_t depth = 0, width = 0;
 
   bvh_view<V, P> view() const {
-    return {volumes.data(), nodes.data(), primitives.data(), ids.data(), depth, width, std::uint32_t(nodes.size())};
+    return {.volumes = volumes.data(),
+            .nodes = nodes.data(),
+            .primitives = primitives.data(),
+            .ids = ids.data(),
+            .levels = depth,
+            .widest = width,
+            .node_count = std::uint32_t(nodes.size()),
+            .primitive_count = std::uint32_t(primitives.size())};
   }
 
   /// A copy of a host tree where `other` runs.

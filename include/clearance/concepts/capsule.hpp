@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// A point of a sensor may stand for more than itself: for all that it hides, or for all places where it may be. Both
-// are a swept ball, a capsule. How near one is to a volume and to a primitive.
+// A point may stand for more than itself: for all that it hides, for all places where it may be, or for a ball that is
+// full. Each is a swept ball, a capsule. How near one is to a volume and to a primitive.
 
 #include <clearance/concepts/traversal.hpp>
 #include <clearance/point_source.hpp>
@@ -20,17 +20,17 @@ struct capsule {
 template <class S>
 concept vague_source = capsule_source<S> && S::vague;
 
-/// Such a source whose capsules have no length: balls around its points.
+/// A source whose capsules have no length: balls around its points. If it is not vague, all of each ball is there.
 template <class S>
-concept ball_source = vague_source<S> && S::balls;
+concept ball_source = capsule_source<S> && S::balls;
 
 /// A source whose capsules have no width and lead straight away from its (0,0,0), as far as they lead anywhere.
 template <class S>
 concept sight_source = capsule_source<S> && S::sight;
 
-#define CLEARANCE_STANDS_FOR_MORE                                                                            \
-  "the points of this source stand for more (what they hide, where they may be): questions about pairs and " \
-  "the least distance take such sources, many configurations only balls; this does not"
+#define CLEARANCE_STANDS_FOR_MORE                                                                      \
+  "the points of this source stand for more (what they hide, where they may be, how large they are): " \
+  "questions about pairs and the least distance take such sources, many configurations only balls; this does not"
 
 /// For whatever looks at points alone.
 template <point_source S>

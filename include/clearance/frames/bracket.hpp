@@ -13,9 +13,10 @@
 
 namespace clearance::frames {
 
-/// The solid is certainly at least this far away (metres): `distance` less `slop` (gap and tolerance) and errors.
+/// The solid is certainly at least this far away (metres): `distance` less `slop` (gap and tolerance), the clouds' gap
+/// and errors.
 CLEARANCE_HD inline double certain_distance(real distance, double slop, const frames::float_error& error) {
-  return double(distance) - slop - error.at(distance);
+  return double(distance) - slop - error.gap - error.at(distance);
 }
 
 /// By how much a part's nearest pair may be farther than the nearest pair of all, in metres, and still decide what is
@@ -125,8 +126,8 @@ class part_slops {
   std::shared_ptr<std::vector<double>> list_;
 };
 
-/// How certain a computed distance is: the error of arithmetic, poses and the source's own rounding, and by how much a
-/// part may be nearer than its primitives (gap and tolerance). Metres.
+/// How certain a computed distance is: the error of arithmetic, poses and the source's own rounding and gap, and by how
+/// much a part may be nearer than its primitives (gap and tolerance). Metres.
 struct distance_certainty {
   frames::float_error error;
   double slop = 0;        ///< The largest slop of all parts.

@@ -31,11 +31,13 @@ inline constexpr double pose_error = 0x1p-44;
 struct float_error {
   double here = 0;                ///< At distance 0, the largest over all parts.
   double per_metre = unit_error;  ///< Added for each metre.
+  double gap = 0;                 ///< By how much more the clouds may be nearer, and not farther.
 
   CLEARANCE_HD double at(real distance) const { return fma(per_metre, double(absolute(distance)), here); }
   CLEARANCE_HD void widen(const float_error& other) {
     here = other.here > here ? other.here : here;
     per_metre = other.per_metre > per_metre ? other.per_metre : per_metre;
+    gap = other.gap > gap ? other.gap : gap;
   }
 };
 
@@ -45,15 +47,15 @@ CLEARANCE_HD inline double arithmetic_error(double extent) { return fma(unit_err
 /// The whole error of a distance to that part. `poses` is the sum of all ways between frames, `origin` the way from the
 /// source's own zero to the origin. A point's position is at most extent + distance + origin long, and wrong by
 /// `relative` of that. unit_error, which counts the extent twice, includes `source_share` of the first two. The error
-/// is infinite if `relative` is 0.25 or more, or if an error or the extent is negative or NaN.
+/// is infinite if `relative` is 0.25 or more, or if an error, the gap or the extent is negative or NaN.
 CLEARANCE_HD inline float_error error_near(double extent, double poses, double origin, const position_error& off) {
-  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && extent >= 0))
+  if (!(off.absolute >= 0 && off.relative >= 0 && off.relative < 0.25 && off.gap >= 0 && extent >= 0))
     return {double(infinity), unit_error};
   const double at_zero = arithmetic_error(extent) + fma(pose_error, poses, fma(off.relative, origin, off.absolute));
-  if (off.relative <= source_share) return {at_zero, unit_error};
+  if (off.relative <= source_share) return {at_zero, unit_error, off.gap};
   const double more = off.relative - source_share;
-  return {fma(more, extent, at_zero) / (1 - more),
-          (unit_error + more) / (1 - more)};  // the error depends on the true distance; this is by the computed one
+  return {fma(more, extent, at_zero) / (1 - more), (unit_error + more) / (1 - more),
+          off.gap};  // the error depends on the true distance; this is by the computed one
 }
 
 /// The origin that is subtracted from a cloud's coordinates: near the robot, in steps of 64 m. So ordinary scenes lose
@@ -115,7 +117,7 @@ struct frame_facts {
 
   frame_facts() = default;
   CLEARANCE_HD frame_facts(const world_transform& cloud, vec3 origin, const position_error& off)
-      : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre} {}
+      : world_from_cloud(cloud), origin(origin), error{0, error_near(0, 0, 0, off).per_metre, off.gap} {}
 
   CLEARANCE_HD void add(const part_facts& facts, real error_of_part) {
     const double slop_of_part = frames::slop(facts);

@@ -9,7 +9,7 @@ namespace clearance::frames {
 
 /// A point may be within `margin` if its computed distance is at most this. All errors are on the safe side.
 CLEARANCE_HD inline real may_be_within(double margin, const part_facts& facts, const float_error& error) {
-  const double most = margin + slop(facts) + error.here;
+  const double most = margin + slop(facts) + error.gap + error.here;
   return rounded_up(most / (most < 0 ? 1 + error.per_metre : 1 - error.per_metre));
 }
 /// A point is certainly within `margin` if its computed distance is at most this.

@@ -76,7 +76,7 @@ struct hidden {
   /// The error of the image, the pixel's width, and what rounding adds to the way.
   position_error rounding() const {
     const position_error own = rounding_of(image);
-    return {own.absolute, own.relative + double(half_pixel) + 0x1p-19};
+    return {own.absolute, own.relative + double(half_pixel) + 0x1p-19, own.gap};
   }
 
   std::span<const std::byte> bytes() const

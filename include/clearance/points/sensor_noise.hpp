@@ -39,6 +39,20 @@ CLEARANCE_HD inline real along_ray(real deviation, vec3 p) {
   return p.z > 0 ? product(deviation, divide(length(p), p.z)) : not_a_number;
 }
 
+/// The largest of the radii of 128 points, `radius(j)` each; infinite if one is none.
+template <class Radius>
+real most_radius(const Radius& radius) {
+  real least = 0, most = 0;
+  bool ordered = true;
+  for (std::size_t j = 0; j < surveyed_points; ++j) {
+    const real r = radius(j);
+    least = min(least, r);
+    most = max(most, r);
+    ordered &= r == r;
+  }
+  return ordered && least >= 0 ? most : infinity;
+}
+
 /// The largest length and slant of what is in a box.
 inline real farthest_in(const extent& box) {
   const auto most = [](real a, real b) { return max(absolute(a), absolute(b)); };
@@ -190,15 +204,7 @@ struct point_radii {
   CLEARANCE_HD real operator()(std::size_t i, vec3) const { return radii[i]; }
   /// Infinite if one is none.
   real most(std::size_t begin, const extent&) const {
-    real least = 0, most = 0;
-    bool ordered = true;
-    for (std::size_t j = 0; j < surveyed_points; ++j) {
-      const real r = radii[begin + j];
-      least = min(least, r);
-      most = max(most, r);
-      ordered &= r == r;
-    }
-    return ordered && least >= 0 ? most : infinity;
+    return detail::most_radius([&](std::size_t j) { return radii[begin + j]; });
   }
   void check(std::size_t points) const {
     if (radii == nullptr && count != 0)

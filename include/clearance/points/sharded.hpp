@@ -23,7 +23,7 @@ class sharded {
       clearance::can<sources::rounded, sources::ranged, sources::seen, sources::in_pieces, sources::copied_in_pieces>,
       can_if<ball_source<S>, sources::capsules>, can_as<S, sources::shared>>;
   static constexpr std::size_t most = 16;  // as an argument of a kernel it has 4 KiB
-  static constexpr bool vague = ball_source<S>, balls = vague, only_on_device = detail::only_on_device<S>();
+  static constexpr bool vague = vague_source<S>, balls = ball_source<S>, only_on_device = detail::only_on_device<S>();
 
   /// Throws std::invalid_argument if there are no pieces or too many.
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
@@ -55,7 +55,8 @@ class sharded {
     position_error worst;
     for (const S& piece : piece_) {
       const position_error error = rounding_of(piece);
-      worst = {std::max(worst.absolute, error.absolute), std::max(worst.relative, error.relative)};
+      worst = {std::max(worst.absolute, error.absolute), std::max(worst.relative, error.relative),
+               std::max(worst.gap, error.gap)};
     }
     return worst;
   }

@@ -14,7 +14,7 @@ struct sliced : passes_on<sliced<S>, S, sources::fetched, sources::unfiltered, s
                           sources::surveyed_around> {
   static_assert(points_or_balls<S>());
   using can = can_all<typename sliced::passed, can_as<S, sources::copied, sources::shared>>;
-  static constexpr bool vague = ball_source<S>, balls = vague;
+  static constexpr bool vague = vague_source<S>, balls = ball_source<S>;
 
   S whole;
   std::size_t begin, count;

@@ -5,6 +5,7 @@
 #include <clearance/concepts/capsule.hpp>
 #include <clearance/points/sensor_noise.hpp>
 #include <clearance/points/sharded.hpp>
+#include <clearance/points/solid_balls.hpp>
 
 namespace clearance {
 
@@ -23,9 +24,9 @@ struct cloud_uncertainty {
 /// `min_distance` and other questions about an uncertain source are about all places where its points may be.
 template <point_source S, sensor_noise N = no_noise>
 struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copied_in_pieces, sources::in_pieces> {
-  static constexpr bool vague = true, balls = !capsule_source<S>;
-  static constexpr bool surveys =
-      surveyed_source<S> && balls && requires(const N n, extent e) { n.most(0, e); };  ///< See `surveyed_capsules`.
+  static constexpr bool vague = true, balls = !capsule_source<S> || ball_source<S>;
+  static constexpr bool surveys = surveyed_source<S> && !capsule_source<S> &&
+                                  requires(const N n, extent e) { n.most(0, e); };  ///< See `surveyed_capsules`.
   using can = can_all<typename uncertain::passed, clearance::can<sources::checked, sources::capsules, sources::shared>,
                       can_if<balls, sources::slicing>, can_if<surveys, sources::surveyed_around>>;
 
@@ -77,7 +78,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   /// The radius of point i at p; NaN if its noise says nothing. It is no sum of products, which compilers may fuse.
   CLEARANCE_HD real radius(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
-    const real turned = capsule_source<S> ? 0 : length(seen), its = noise(i, seen);
+    const real turned = balls ? length(seen) : 0, its = noise(i, seen);
     return its >= 0 ? fma(its, spread, fma(fma(turn, turned, shift), spread, product(drift, spread))) : not_a_number;
   }
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const {
@@ -92,7 +93,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   /// What the radius of point i at p is made of. What a turn adds along a capsule is in `rounding`.
   CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const {
     const vec3 seen = p - sensor_of(source);
-    const real turned = capsule_source<S> ? 0 : length(seen);
+    const real turned = balls ? length(seen) : 0;
     return {product(noise(i, seen), spread), product(fma(turn, turned, shift), spread), product(drift, spread)};
   }
 
@@ -140,7 +141,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   }
   position_error rounding() const {
     position_error own = rounding_of(source);
-    if constexpr (capsule_source<S>) own.relative += double(turn);
+    if constexpr (!balls) own.relative += double(turn);
     return own;
   }
 
@@ -149,7 +150,7 @@ struct uncertain : passes_on<uncertain<S, N>, S, sources::copied, sources::copie
   CLEARANCE_HD bool may_be_in_range(std::size_t i, vec3 p) const {
     const real by = beyond_range(source, i, p);
     if (!(by < infinity)) return false;
-    const real off = capsule_source<S> ? turn * length(p - sensor_of(source)) : 0, reach = radius(i, p) + off;
+    const real off = balls ? 0 : turn * length(p - sensor_of(source)), reach = radius(i, p) + off;
     return !(reach <= 0) && !(reach * (1 + slack) + slack * length(p) < by);
   }
 };
@@ -173,6 +174,32 @@ struct as_measured {
     std::vector<decltype((*this)(s.piece(0)))> pieces;
     for (std::size_t k = 0; k < s.pieces(); ++k) pieces.push_back((*this)(s.piece(k)));
     return sharded(pieces);
+  }
+};
+
+/// Balls that are larger by their gap, and so contain what they fill. Other sources stay as they are.
+struct as_filled {
+  template <point_source S>
+  CLEARANCE_HD S operator()(const S& s) const {
+    return s;
+  }
+  template <point_source S>
+  solid_balls<S> operator()(const solid_balls<S>& s) const {
+    return s.filled();
+  }
+  template <ball_source S, sensor_noise N>
+  auto operator()(const uncertain<S, N>& s) const {
+    uncertain<S, N> same = s;
+    same.source = (*this)(s.source);
+    return same;
+  }
+  template <ball_source S>
+  auto operator()(const sliced<S>& s) const {
+    return sliced((*this)(s.whole), s.begin, s.count);
+  }
+  template <ball_source S>
+  sharded<S> operator()(const sharded<S>& s) const {
+    return s.with_pieces(*this);
   }
 };
 

@@ -22,10 +22,11 @@ struct uncertainty_shares {
   double joints = 0;       ///< What inexact joints add to the part's radius.
   double delay = 0;        ///< What the part's motion while the answer is made adds to its radius.
   double gap = 0;          ///< The part's gap and tolerance.
+  double balls = 0;        ///< The cloud's gap, if its points are balls that fill something.
   double rounding = 0;     ///< What arithmetic may have lost.
 
   /// All shares together.
-  double sum() const { return noise + calibration + time + joints + delay + gap + rounding; }
+  double sum() const { return noise + calibration + time + joints + delay + gap + balls + rounding; }
 };
 
 /// The pair of a part that is least far apart for certain. `distance` is what was measured, `lower` what is left of it.
@@ -144,6 +145,7 @@ struct uncertain_pair {
   part_witness measured;
   radius_shares shares;
   bool bounded = true;  ///< False: the point may be anywhere.
+  real gap = 0;         ///< Of its cloud.
 };
 
 /// Reads a part's pair again, as it was measured. The number after the last part's is the nominal answer's: of its
@@ -156,6 +158,7 @@ struct read_pair {
   Source source;
   vec3 origin;
   world_transform world_from_cloud;
+  real gap;  ///< The cloud's.
   std::uint32_t cloud;
   const part_minimum* minima;
   const min_distance_result* nominal;
@@ -173,15 +176,18 @@ struct read_pair {
     const radius_shares shares = shares_of(source, least.point, p);
     pairs[i].shares = shares;
     pairs[i].bounded = s.valid();
+    pairs[i].gap = gap;
     if (i >= part_count) return;
     const auto k = std::uint32_t(i);
     const frames::placement place = places[k];
-    const vec3 q = place.part_from_cloud(p - origin);
-    const real radius = shares.sum(),
-               within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(q));
+    const auto measured = as_measured{}(source);
+    const auto q = scan::moved(place.part_from_cloud, scan::element_less(measured, least.point, p - origin, origin));
+    const vec3 at = scan::start_of(q);
+    const real radius = shares.sum() + gap,
+               within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(at));
     const auto f = evaluate(parts[k], q, within, walk);  // not far beyond the nearest
     if (f.nearest.id == none) return;
-    const contact touched = f.at(q, place.world_from_part);
+    const contact touched = f.at(at, place.world_from_part);
     pairs[i].measured = {.distance = f.distance,
                          .part = k,
                          .cloud = cloud,
@@ -256,7 +262,7 @@ class certain_distance::engine {
     minima_ = memory_.template space<part_minimum>(parts).data();
     pairs_ = memory_.template space<minimum::uncertain_pair>(parts + 1).data();
     nominal_.start(poses, mapped_clouds(readable, as_measured{}), min_distance{}, least_);
-    search_.start(poses, readable, min_distance_per_part{}, {least_ + 1, minima_});
+    search_.start(poses, mapped_clouds(readable, as_filled{}), min_distance_per_part{}, {least_ + 1, minima_});
     vague_ = read(poses, readable);
   }
   result finish() {
@@ -288,7 +294,7 @@ class certain_distance::engine {
     bool vague = false;
     frames::for_each_turn(
         frame_, model_.facts, poses, clouds, [&]<point_source S>(const S& source, const frames::turn& now) {
-          static_assert(points_alone<std::invoke_result_t<as_measured, const S&>>());
+          static_assert(points_or_balls<std::invoke_result_t<as_measured, const S&>>());
           vague = vague || vague_source<S>;
           for (std::uint32_t k = 0; k < parts; ++k) errors_[k] = std::max(errors_[k], double(frame_.places[k].error));
           const auto places = backends::few_or_kept<minimum::few>(frame_.places, memory_);
@@ -299,6 +305,7 @@ class certain_distance::engine {
                                                                    .source = source,
                                                                    .origin = frame_.origin,
                                                                    .world_from_cloud = frame_.world_from_cloud,
+                                                                   .gap = rounded_up(rounding_of(source).gap),
                                                                    .cloud = now.cloud,
                                                                    .minima = minima_,
                                                                    .nominal = least_,
@@ -325,6 +332,7 @@ class certain_distance::engine {
                      .joints = radius(k).joints,
                      .delay = radius(k).delay,
                      .gap = frames::slop(model_.facts[k]),
+                     .balls = pair.gap,
                      .rounding = error.at(part.to_ball)};
     }
     if (r.nominal.part == none) return;

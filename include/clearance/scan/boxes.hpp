@@ -106,7 +106,7 @@ struct listed_pieces : passes_on<listed_pieces<S>, S, sources::capsules, sources
                                  sources::surveyed_around> {
   static_assert(points_or_balls<S>());
   using can = typename listed_pieces::passed;
-  static constexpr bool vague = ball_source<S>, balls = vague;
+  static constexpr bool vague = vague_source<S>, balls = ball_source<S>;
 
   S whole;
   const std::uint32_t* numbers;

@@ -23,7 +23,7 @@ template <point_source S>
 CLEARANCE_HD auto element_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
   if constexpr (capsule_source<S>) {
     vec3 p = x + origin;
-    if constexpr (vague_source<S>)  // the radius of the place that was read
+    if constexpr (vague_source<S> || ball_source<S>)  // the radius of the place that was read
       if (!(origin == vec3{0, 0, 0})) p = s[i].position;
     const capsule c = s.around(i, p);
     return capsule{c.from - origin, c.along, c.radius};
