@@ -7,6 +7,7 @@
 #include <clearance/backends/kept_memory.hpp>
 #include <clearance/concepts.hpp>
 #include <clearance/ground/indices.hpp>
+#include <clearance/ground/ptx.hpp>
 
 #include <algorithm>
 #include <map>
@@ -21,19 +22,11 @@ namespace clearance {
 // Kernels that start while the one before them in their stream still runs: programmatic dependent launch.
 
 /// Lets the next kernel of the stream start, if it may start early: as soon as all blocks have called this.
-__device__ inline void let_next_start() {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-  asm volatile("griddepcontrol.launch_dependents;" ::: "memory");
-#endif
-}
+__device__ inline void let_next_start() { ptx::launch_dependents(); }
 
 /// Waits until all that is in the stream before this kernel has ended. Its writes are seen then. Code for devices
 /// before Hopper does not wait, and such a kernel is not launched early.
-__device__ inline void wait_for_stream() {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
-  asm volatile("griddepcontrol.wait;" ::: "memory");
-#endif
-}
+__device__ inline void wait_for_stream() { ptx::wait_for_dependencies(); }
 
 /// A kernel that is launched early begins with both. What it could do before it waits is not worth it: the first reads
 /// of a frame that comes alone would begin later.
@@ -107,9 +100,7 @@ struct device {
   template <class... P, class... A>
   void launch(void (*kernel)(P...), unsigned blocks, unsigned threads, std::size_t shared,
               const A&... arguments) const {
-    const device_guard guard(id);
-    kernel<<<blocks, threads, shared, stream>>>(arguments...);
-    check_cuda(cudaGetLastError(), "kernel launch");
+    launch_with({}, kernel, blocks, threads, shared, arguments...);
   }
   /// The same for a kernel that may start while what is in the stream before it still runs, where the device can do
   /// that: all its threads call `wait_for_stream` before they touch what others read or write.
@@ -122,14 +113,7 @@ struct device {
     cudaLaunchAttribute early{};
     early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
     early.val.programmaticStreamSerializationAllowed = 1;
-    cudaLaunchConfig_t how{};
-    how.gridDim = blocks;
-    how.blockDim = threads;
-    how.dynamicSmemBytes = shared;
-    how.stream = stream;
-    how.attrs = &early;
-    how.numAttrs = 1;
-    check_cuda(cudaLaunchKernelEx(&how, kernel, arguments...), "kernel launch");
+    launch_with(std::span(&early, 1), kernel, blocks, threads, shared, arguments...);
   }
 
   /// Enqueues `body(indices)` over a grid stride and returns at once. A recursive body gives the stack that it needs,
@@ -238,6 +222,21 @@ struct device {
     int integrated = 0;
     check_cuda(cudaDeviceGetAttribute(&integrated, cudaDevAttrIntegrated, id), "cudaDeviceGetAttribute");
     return integrated != 0 && attributes.devicePointer != nullptr;
+  }
+
+ private:
+  template <class... P, class... A>
+  void launch_with(std::span<cudaLaunchAttribute> attributes, void (*kernel)(P...), unsigned blocks, unsigned threads,
+                   std::size_t shared, const A&... arguments) const {
+    const device_guard guard(id);
+    cudaLaunchConfig_t how{};
+    how.gridDim = blocks;
+    how.blockDim = threads;
+    how.dynamicSmemBytes = shared;
+    how.stream = stream;
+    how.attrs = attributes.data();
+    how.numAttrs = unsigned(attributes.size());
+    check_cuda(cudaLaunchKernelEx(&how, kernel, arguments...), "kernel launch");
   }
 };
 

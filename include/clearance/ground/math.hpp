@@ -6,6 +6,7 @@
 // that a compiler could contract. So host and device, with and without -mfma, agree bit for bit.
 
 #include <clearance/ground/config.hpp>
+#include <clearance/ground/ptx.hpp>
 
 #include <bit>
 #include <cmath>
@@ -95,9 +96,7 @@ CLEARANCE_HD inline real length(vec3 a) { return square_root(dot(a, a)); }
 /// answers.
 CLEARANCE_HD inline real rough_root(real a) {
 #if defined(__CUDA_ARCH__)
-  real root;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(a));
-  return root;
+  return ptx::rough_root(a);
 #else
   return square_root(a);
 #endif
@@ -118,9 +117,7 @@ CLEARANCE_HD inline real rough_length(vec3 a) { return rough_root(dot(a, a)); }
 /// A quicker inverse likewise. That of a subnormal number may be infinite.
 CLEARANCE_HD inline real rough_inverse(real a) {
 #if defined(__CUDA_ARCH__)
-  real inverse;
-  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(a));
-  return inverse;
+  return ptx::rough_inverse(a);
 #else
   return 1 / a;
 #endif

@@ -3,6 +3,7 @@
 // How the threads of a block are divided, and what a warp agrees on.
 
 #include <clearance/ground/math.hpp>
+#include <clearance/ground/ptx.hpp>
 #include <clearance/ground/read_only.hpp>
 
 namespace clearance::scan {
@@ -19,11 +20,7 @@ __device__ T fresh(const T& shared) {
 /// Adds one to a counter of the whole device and returns its old value. Threads that count later see what this thread
 /// wrote before. This thread sees what others wrote before they counted. It is what cuda::atomic_ref's fetch_add
 /// becomes; <cuda/atomic> takes a compiler two seconds to read.
-__device__ inline std::uint32_t count_in(std::uint32_t& counter) {
-  std::uint32_t old;
-  asm volatile("atom.add.acq_rel.gpu.u32 %0,[%1],%2;" : "=r"(old) : "l"(&counter), "r"(1u) : "memory");
-  return old;
-}
+__device__ inline std::uint32_t count_in(std::uint32_t& counter) { return ptx::add_one_in_order(counter); }
 
 __device__ inline std::uint32_t lower_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
 
