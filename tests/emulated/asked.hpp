@@ -51,6 +51,10 @@ inline void put(record& to, const std::string& what, const clearance::part_minim
   to.put(what, m.distance, m.cloud, m.point, m.primitive);
 }
 
+inline void put(record& to, const std::string& what, const clearance::point_counts& c) {
+  to.put(what + ", counts", c.seen, c.valid, std::vector(c.dropped, c.dropped + clearance::drop_reasons));
+}
+
 /// Scenes of few points; `most` of each at most.
 template <class P>
 std::vector<scene<P>> small_scenes(std::size_t most = 700) {
@@ -65,6 +69,16 @@ auto model_of(const scene<P>& s, const clearance::build_options& how = {}) {
   std::vector<clearance::part<clearance::bvh<V, P>>> parts;
   for (const auto& primitives : s.parts) parts.push_back(clearance::make_part(clearance::build<V>(primitives, how)));
   return clearance::model(std::move(parts)).on(here);
+}
+
+/// Calls `ask(scene, model, clouds, name)` for each small scene, with its points and, as a second cloud, an image.
+template <class V, class P, class Ask>
+void each_scene(const clearance::build_options& how, const Ask& ask, std::size_t most = 700) {
+  for (const auto& s : small_scenes<P>(most)) {
+    const sources<P> all(s);
+    const auto model = model_of<V>(s, how);
+    ask(s, model, std::tuple(placed{all.span, s.cloud_pose}, placed{all.raw, all.camera_pose}), s.name);
+  }
 }
 
 }  // namespace emulated_test

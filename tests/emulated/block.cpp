@@ -78,6 +78,7 @@ struct fiber {
   bool done = true;
   std::uint64_t answer = 0;
   const char* waits = nullptr;
+  unsigned places = 0;                   ///< How often it has asked who is at its place.
   std::deque<std::vector<copy>> copies;  ///< The last ones are not committed yet.
 #if defined(__SANITIZE_ADDRESS__)
   void* fake_stack = nullptr;
@@ -157,7 +158,7 @@ class block {
   /// Waits until no lane of the warp can run that is not at such a place. Then those of one place go on.
   unsigned lanes_here(const void* place) {
     const unsigned warp = now_ / 32;
-    places_[warp].push_back({now_, place});
+    places_[warp].push_back({now_, place, me().places++});
     sleep("__activemask");
     return unsigned(me().answer);
   }
@@ -181,6 +182,8 @@ class block {
   struct at_place {
     unsigned thread;
     const void* place;
+    unsigned count;  ///< Lanes in different rounds of a loop do not meet, as far as a GPU unrolls it or joins them.
+    bool meets(const at_place& other) const { return place == other.place && count == other.count; }
   };
 
   unsigned alive(unsigned warp) const {
@@ -261,7 +264,7 @@ class block {
 
   void begin(unsigned t) {
     fiber& f = fibers_[t];
-    f.done = false, f.waits = nullptr, f.copies.assign(1, {});
+    f.done = false, f.waits = nullptr, f.places = 0, f.copies.assign(1, {});
     starting_ = t;
     ucontext_t made;
     getcontext(&made);
@@ -361,10 +364,10 @@ class block {
   void meet_at_places() {
     for (auto& its : places_) {
       if (its.empty()) continue;
-      const void* const place = its[chance() % its.size()].place;
+      const at_place one = its[chance() % its.size()];
       unsigned those = 0;
       for (const at_place& p : its)
-        if (p.place == place && (those == 0 || chance() % 8 != 1)) those |= 1u << p.thread % 32;
+        if (p.meets(one) && (those == 0 || chance() % 8 != 1)) those |= 1u << p.thread % 32;
       std::erase_if(its, [&](const at_place& p) {
         if ((those >> p.thread % 32 & 1) == 0) return false;
         fibers_[p.thread].answer = those, ready_.push_back(p.thread);

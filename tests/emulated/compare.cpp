@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 
 namespace {
 
@@ -40,6 +41,7 @@ int main(int count, char** arguments) try {
     return 2;
   }
   const auto [on_host, by_kernels] = its->second;
+  if (on_host == nullptr || by_kernels == nullptr) throw std::logic_error("these questions were not compiled twice");
   emulated::record host;
   on_host(host);
   int all = 0;

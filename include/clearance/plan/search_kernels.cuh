@@ -235,7 +235,7 @@ __global__ void __launch_bounds__(256, 4)
   using memory_type = typename Arguments::memory_type;
   using block_type = block_search<tree_search<typename Arguments::body_type, Tree>>;
   extern __shared__ distance_key memory[];
-  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
+  alignas(memory_type) __shared__ std::byte memory_of_best[sizeof(memory_type)];
   __shared__ typename block_type::words words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
   search_in_turn(a, best, [&](std::uint32_t c, std::uint32_t piece) {
@@ -314,7 +314,7 @@ __global__ void __launch_bounds__(256, 4)
   using room_type = field_room<typename Arguments::part_type>;
   using block_type = block_search<field_search<typename Arguments::body_type, Tree>>;
   extern __shared__ distance_key memory[];
-  __shared__ alignas(memory_type) std::byte memory_of_best[sizeof(memory_type)];
+  alignas(memory_type) __shared__ std::byte memory_of_best[sizeof(memory_type)];
   __shared__ typename block_type::words words;
   memory_type& best = *reinterpret_cast<memory_type*>(memory_of_best);
   const room_type room(memory, blockDim.x);
