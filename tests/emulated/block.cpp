@@ -59,6 +59,7 @@ struct machine {
   std::vector<unsigned> waiting;  ///< Workers that want the turn.
   unsigned turn = 0;              ///< Worker that has it; 0: none.
   std::uint64_t in_vain = 0;
+  unsigned turns_last = 1;  ///< So many switches, on average.
   std::string failed;
 };
 machine& all() {
@@ -78,6 +79,7 @@ struct fiber {
   bool done = true;
   std::uint64_t answer = 0;
   const char* waits = nullptr;
+  std::uint32_t rank = 0;
   unsigned places = 0;                   ///< How often it has asked who is at its place.
   std::deque<std::vector<copy>> copies;  ///< The last ones are not committed yet.
 #if defined(__SANITIZE_ADDRESS__)
@@ -264,7 +266,7 @@ class block {
 
   void begin(unsigned t) {
     fiber& f = fibers_[t];
-    f.done = false, f.waits = nullptr, f.places = 0, f.copies.assign(1, {});
+    f.done = false, f.waits = nullptr, f.places = 0, f.rank = chance(), f.copies.assign(1, {});
     starting_ = t;
     ucontext_t made;
     getcontext(&made);
@@ -333,7 +335,7 @@ class block {
     machine& m = all();
     if (live_ == 0) return false;
     for (;;) {
-      if (m.seed != 0 && chance() % 256 == 0) pass_turn();
+      if (m.seed != 0 && chance() % m.turns_last == 0) pass_turn();
       if (!m.failed.empty()) return failure_ = m.failed, false;
       if (ready_.empty()) meet_at_places();
       if (!ready_.empty()) break;
@@ -342,18 +344,23 @@ class block {
       pass_turn();
     }
     std::size_t next = 0;
-    if (m.seed != 0) switch (m.seed % 4) {
-        case 1:
+    if (m.seed != 0) switch (m.seed % 5) {
+        case 1:  // any
           next = chance() % ready_.size();
           break;
-        case 2:
+        case 2:  // who came last
           next = ready_.size() - 1;
           break;
         case 3:  // a warp goes on as far as it can
           for (next = 0; next + 1 < ready_.size() && ready_[next] / 32 != now_ / 32;) ++next;
           if (ready_[next] / 32 != now_ / 32) next = chance() % ready_.size();
           break;
-        default:
+        case 4:  // by rank: some threads wait as long as others can run, until their ranks change
+          for (std::size_t k = 1; k < ready_.size(); ++k)
+            if (fibers_[ready_[k]].rank > fibers_[ready_[next]].rank) next = k;
+          if (chance() % 512 == 0) fibers_[ready_[next]].rank = chance();
+          break;
+        default:  // who came first, mostly
           next = chance() % 8 == 0 ? chance() % ready_.size() : 0;
       }
     now_ = ready_[next];
@@ -479,6 +486,7 @@ bool in_kernel() { return here != nullptr && here->running(); }
 std::string run(unsigned blocks, unsigned threads, std::size_t shared, const std::function<void()>& body) {
   machine& m = all();
   const std::lock_guard one_kernel(m.kernels);
+  m.turns_last = 8u << 3 * (m.seed == 0 ? 0 : m.random() / 64 % 4);
   m.failed.clear(), m.in_vain = 0, m.turn = 0, m.waiting.clear();
   std::vector<unsigned> order(blocks);
   for (unsigned b = 0; b < blocks; ++b) order[b] = b;

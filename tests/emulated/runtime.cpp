@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <map>
 #include <mutex>
 
@@ -113,7 +114,11 @@ cudaError_t cudaMalloc(void** to, std::size_t bytes) { return allocate(to, bytes
 cudaError_t cudaFree(void* memory) { return release(memory, cudaMemoryTypeDevice); }
 cudaError_t cudaHostAlloc(void** to, std::size_t bytes, unsigned) { return allocate(to, bytes, cudaMemoryTypeHost); }
 cudaError_t cudaFreeHost(void* memory) { return release(memory, cudaMemoryTypeHost); }
-cudaError_t cudaMemPoolCreate(cudaMemPool_t* pool, const cudaMemPoolProps* of) { return make(pool, of->location.id); }
+cudaError_t cudaMemPoolCreate(cudaMemPool_t* pool, const cudaMemPoolProps* of) {
+  static std::deque<emulated_pool> all;  // nobody gives them back
+  *pool = &all.emplace_back(emulated_pool{of->location.id});
+  return cudaSuccess;
+}
 cudaError_t cudaMemPoolSetAttribute(cudaMemPool_t, cudaMemPoolAttr, void*) { return cudaSuccess; }
 cudaError_t cudaMallocFromPoolAsync(void** to, std::size_t bytes, cudaMemPool_t, cudaStream_t) {
   return allocate(to, bytes, cudaMemoryTypeDevice);
