@@ -106,7 +106,10 @@ class block {
   }
 
   void run(unsigned number, unsigned threads, std::size_t shared, const std::function<void()>& body) {
-    body_ = &body, live_ = threads, number_ = number, failure_.clear();
+    body_ = &body;
+    live_ = threads;
+    number_ = number;
+    failure_.clear();
     while (fibers_.size() < threads) {
       fibers_.emplace_back();
       void* const memory =
@@ -115,11 +118,17 @@ class block {
       fibers_.back().stack = static_cast<char*>(memory);
     }
     count_ = threads;
-    ready_.clear(), spinning_.clear(), meetings_.assign((threads + 31) / 32, {}),
-        places_.assign((threads + 31) / 32, {});
-    arrived_ = said_ = 0, barrier_.clear();
+    ready_.clear();
+    spinning_.clear();
+    meetings_.assign((threads + 31) / 32, {});
+    places_.assign((threads + 31) / 32, {});
+    arrived_ = said_ = 0;
+    barrier_.clear();
     empty_shared_memory(shared);
-    for (unsigned t = 0; t < threads; ++t) begin(t), ready_.push_back(t);
+    for (unsigned t = 0; t < threads; ++t) {
+      begin(t);
+      ready_.push_back(t);
+    }
     blockIdx = {number, 0, 0};
     go_on();
     open_shared_memory();
@@ -133,11 +142,15 @@ class block {
   unsigned meet_block(call what, bool mine) {
     if (arrived_ != 0 && kind_ != what)
       fail(std::string("threads of a block meet in ") + name_of(kind_) + " and " + name_of(what));
-    kind_ = what, ++arrived_, said_ += mine;
+    kind_ = what;
+    ++arrived_;
+    said_ += mine;
     if (arrived_ == live_)
       open_barrier();
-    else
-      barrier_.push_back(now_), sleep(name_of(what));
+    else {
+      barrier_.push_back(now_);
+      sleep(name_of(what));
+    }
     if (all().seed != 0 && chance() % 4 == 0) between();
     return unsigned(me().answer);
   }
@@ -147,9 +160,11 @@ class block {
     if ((mask & bit) == 0) fail(std::string(name_of(what)) + " by a lane that is not in its mask");
     auto& its = meetings_[warp];
     auto m = std::find_if(its.begin(), its.end(), [mask](const meeting& k) { return k.mask == mask; });
-    if (m == its.end()) its.push_back({.mask = mask, .what = what}), m = its.end() - 1;
+    if (m == its.end()) m = its.insert(its.end(), {.mask = mask, .what = what});
     if (m->what != what) fail(std::string("lanes of a warp meet in ") + name_of(m->what) + " and " + name_of(what));
-    m->here |= bit, m->values[now_ % 32] = mine, m->lanes[now_ % 32] = lane;
+    m->here |= bit;
+    m->values[now_ % 32] = mine;
+    m->lanes[now_ % 32] = lane;
     if (m->here == (mask & alive(warp)))
       conclude(warp, m - its.begin());
     else
@@ -197,9 +212,14 @@ class block {
   void open_barrier() {
     const unsigned said = said_, live = live_;
     const unsigned answer = kind_ == call::sync_and ? said == live : kind_ == call::sync_or ? said != 0 : said;
-    for (const unsigned t : barrier_) fibers_[t].answer = answer, ready_.push_back(t);
+    for (const unsigned t : barrier_) {
+      fibers_[t].answer = answer;
+      ready_.push_back(t);
+    }
     if (!fibers_[now_].done) fibers_[now_].answer = answer;
-    barrier_.clear(), arrived_ = said_ = 0, all().in_vain = 0;
+    barrier_.clear();
+    arrived_ = said_ = 0;
+    all().in_vain = 0;
   }
 
   void conclude(unsigned warp, std::ptrdiff_t at) {
@@ -266,11 +286,17 @@ class block {
 
   void begin(unsigned t) {
     fiber& f = fibers_[t];
-    f.done = false, f.waits = nullptr, f.places = 0, f.rank = chance(), f.copies.assign(1, {});
+    f.done = false;
+    f.waits = nullptr;
+    f.places = 0;
+    f.rank = chance();
+    f.copies.assign(1, {});
     starting_ = t;
     ucontext_t made;
     getcontext(&made);
-    made.uc_stack.ss_sp = f.stack + 4096, made.uc_stack.ss_size = stack_bytes - 4096, made.uc_link = nullptr;
+    made.uc_stack.ss_sp = f.stack + 4096;
+    made.uc_stack.ss_size = stack_bytes - 4096;
+    made.uc_link = nullptr;
     makecontext(&made, &block::enter, 0);
     one = this;
     if (_setjmp(worker_at_) == 0) {
@@ -297,15 +323,19 @@ class block {
     for (auto& batch : f.copies)
       for (const copy& c : batch) std::memcpy(c.to, c.from, c.bytes);
     f.copies.clear();
-    f.done = true, --live_, all().in_vain = 0;
+    f.done = true;
+    --live_;
+    all().in_vain = 0;
     // Those that wait for this thread now wait for one less.
     if (live_ != 0 && arrived_ == live_) open_barrier();
     const unsigned warp = now_ / 32, those = alive(warp);
     for (std::size_t k = 0; k < meetings_[warp].size();)
-      if (const meeting& m = meetings_[warp][k]; m.here == (m.mask & those))
-        conclude(warp, std::ptrdiff_t(k)), k = 0;
-      else
+      if (const meeting& m = meetings_[warp][k]; m.here == (m.mask & those)) {
+        conclude(warp, std::ptrdiff_t(k));
+        k = 0;
+      } else {
         ++k;
+      }
     leave();
   }
 
@@ -336,10 +366,16 @@ class block {
     if (live_ == 0) return false;
     for (;;) {
       if (m.seed != 0 && chance() % m.turns_last == 0) pass_turn();
-      if (!m.failed.empty()) return failure_ = m.failed, false;
+      if (!m.failed.empty()) {
+        failure_ = m.failed;
+        return false;
+      }
       if (ready_.empty()) meet_at_places();
       if (!ready_.empty()) break;
-      if (spinning_.empty() || ++m.in_vain > patience) return failure_ = hangs(), false;
+      if (spinning_.empty() || ++m.in_vain > patience) {
+        failure_ = hangs();
+        return false;
+      }
       ready_.swap(spinning_);
       pass_turn();
     }
@@ -377,7 +413,8 @@ class block {
         if (p.meets(one) && (those == 0 || chance() % 8 != 1)) those |= 1u << p.thread % 32;
       std::erase_if(its, [&](const at_place& p) {
         if ((those >> p.thread % 32 & 1) == 0) return false;
-        fibers_[p.thread].answer = those, ready_.push_back(p.thread);
+        fibers_[p.thread].answer = those;
+        ready_.push_back(p.thread);
         return true;
       });
       all().in_vain = 0;
@@ -408,7 +445,8 @@ class block {
   // The worker's own stack, from which fibers are begun and where a block ends.
 
   void go_on() {
-    running_ = true, now_ = 0;
+    running_ = true;
+    now_ = 0;
     if (choose()) {
       if (_setjmp(worker_at_) == 0) {
         threadIdx = {now_, 0, 0};
@@ -487,7 +525,10 @@ std::string run(unsigned blocks, unsigned threads, std::size_t shared, const std
   machine& m = all();
   const std::lock_guard one_kernel(m.kernels);
   m.turns_last = 8u << 3 * (m.seed == 0 ? 0 : m.random() / 64 % 4);
-  m.failed.clear(), m.in_vain = 0, m.turn = 0, m.waiting.clear();
+  m.failed.clear();
+  m.in_vain = 0;
+  m.turn = 0;
+  m.waiting.clear();
   std::vector<unsigned> order(blocks);
   for (unsigned b = 0; b < blocks; ++b) order[b] = b;
   if (m.seed != 0)
@@ -498,7 +539,8 @@ std::string run(unsigned blocks, unsigned threads, std::size_t shared, const std
   for (unsigned w = 1; w <= workers; ++w) block_of(w);
   const auto work = [&](unsigned worker) {
     here = &block_of(worker);
-    gridDim = {blocks, 1, 1}, blockDim = {threads, 1, 1};
+    gridDim = {blocks, 1, 1};
+    blockDim = {threads, 1, 1};
     try {
       while (next < order.size() && m.failed.empty()) here->run(order[next++], threads, shared, body);
     } catch (const stopped&) {
@@ -521,7 +563,10 @@ std::string run(unsigned blocks, unsigned threads, std::size_t shared, const std
         work(w);
         const std::lock_guard lock(m.turns);
         m.turn = 0;
-        if (!m.waiting.empty()) m.turn = m.waiting.front(), m.waiting.erase(m.waiting.begin());
+        if (!m.waiting.empty()) {
+          m.turn = m.waiting.front();
+          m.waiting.erase(m.waiting.begin());
+        }
         m.changed.notify_all();
       });
     for (std::thread& t : pool) t.join();

@@ -48,7 +48,10 @@ void crowd(record& to) {
     for (const double margin : {0.0, 0.001, 0.3}) put(to, when, near(s.poses, point_span(points), {{margin}}));
     put(to, when, counted(s.poses, point_span(points), {.thresholds = {0.02, 0.1, 0.3}}));
   };
-  frame_after_frame(s.poses, ask, [&] { near.forget(), counted.forget(); });
+  frame_after_frame(s.poses, ask, [&] {
+    near.forget();
+    counted.forget();
+  });
 }
 
 void all(record& to) {

@@ -53,7 +53,11 @@ void warm(record& to, std::size_t parts) {
     put(to, what + ", per part", all);
     for (const auto& m : minima) put(to, what + ", of a part", m);
   };
-  for (int k = 0; k < 2; ++k) frame_after_frame(s.poses, ask, [&] { one.forget(), each.forget(); });
+  for (int k = 0; k < 2; ++k)
+    frame_after_frame(s.poses, ask, [&] {
+      one.forget();
+      each.forget();
+    });
 }
 
 void all(record& to) {

@@ -84,11 +84,18 @@ const char* cudaGetErrorString(cudaError_t code) {
                                            : "an error of the emulated runtime";
 }
 cudaError_t cudaGetLastError() { return cudaSuccess; }
-cudaError_t cudaGetDeviceCount(int* n) { return *n = devices, cudaSuccess; }
-cudaError_t cudaGetDevice(int* id) { return *id = current, cudaSuccess; }
+cudaError_t cudaGetDeviceCount(int* n) {
+  *n = devices;
+  return cudaSuccess;
+}
+cudaError_t cudaGetDevice(int* id) {
+  *id = current;
+  return cudaSuccess;
+}
 cudaError_t cudaSetDevice(int id) {
   if (id < 0 || id >= devices) return cudaErrorInvalidDevice;
-  return current = id, cudaSuccess;
+  current = id;
+  return cudaSuccess;
 }
 cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr what, int) {
   switch (what) {
@@ -107,7 +114,10 @@ cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr what, int) {
   }
   return cudaSuccess;
 }
-cudaError_t cudaDeviceGetLimit(std::size_t* bytes, cudaLimit) { return *bytes = 1024, cudaSuccess; }
+cudaError_t cudaDeviceGetLimit(std::size_t* bytes, cudaLimit) {
+  *bytes = 1024;
+  return cudaSuccess;
+}
 cudaError_t cudaDeviceSynchronize() { return cudaSuccess; }
 
 cudaError_t cudaMalloc(void** to, std::size_t bytes) { return allocate(to, bytes, cudaMemoryTypeDevice); }
@@ -126,10 +136,12 @@ cudaError_t cudaMallocFromPoolAsync(void** to, std::size_t bytes, cudaMemPool_t,
 cudaError_t cudaFreeAsync(void* memory, cudaStream_t) { return release(memory, cudaMemoryTypeDevice); }
 
 cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t) {
-  return std::memcpy(to, from, bytes), cudaSuccess;
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
 }
 cudaError_t cudaMemsetAsync(void* to, int value, std::size_t bytes, cudaStream_t) {
-  return std::memset(to, value, bytes), cudaSuccess;
+  std::memset(to, value, bytes);
+  return cudaSuccess;
 }
 cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* of, const void* memory) {
   *of = {cudaMemoryTypeUnregistered, -1, nullptr, nullptr};
@@ -156,4 +168,7 @@ cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
 }
 cudaError_t cudaEventSynchronize(cudaEvent_t) { return cudaSuccess; }
 cudaError_t cudaFuncSetAttribute(const void*, cudaFuncAttribute, int) { return cudaSuccess; }
-cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* of, const void*) { return *of = {90, 90}, cudaSuccess; }
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* of, const void*) {
+  *of = {90, 90};
+  return cudaSuccess;
+}

@@ -10,9 +10,13 @@ struct DeviceReduce {
   template <class In, class Out, class Join, class Make, class T>
   static cudaError_t TransformReduce(void* room, std::size_t& bytes, In from, Out to, int n, Join join, Make make,
                                      T start, cudaStream_t) {
-    if (room == nullptr) return bytes = 1, cudaSuccess;
+    if (room == nullptr) {
+      bytes = 1;
+      return cudaSuccess;
+    }
     for (int i = 0; i < n; ++i) start = join(start, make(from[i]));
-    return *to = start, cudaSuccess;
+    *to = start;
+    return cudaSuccess;
   }
 };
 

@@ -10,7 +10,10 @@ struct DeviceSelect {
   template <class In, class Out, class Count, class Wanted>
   static cudaError_t If(void* room, std::size_t& bytes, In from, Out to, Count* count, int n, Wanted wanted,
                         cudaStream_t) {
-    if (room == nullptr) return bytes = 1, cudaSuccess;
+    if (room == nullptr) {
+      bytes = 1;
+      return cudaSuccess;
+    }
     *count = 0;
     for (int i = 0; i < n; ++i)
       if (const auto value = from[i]; wanted(value)) to[(*count)++] = value;
