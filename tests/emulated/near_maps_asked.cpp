@@ -2,8 +2,7 @@
 // Robots with fields and with cells, made where the questions are asked.
 #include "emulated/asked.hpp"
 
-#include <clearance/cells.hpp>
-#include <clearance/fields.hpp>
+#include <clearance/near_maps.hpp>
 #include <clearance/questions/distances.hpp>
 #include <clearance/questions/in_collision.hpp>
 #include <clearance/questions/min_distances.hpp>
