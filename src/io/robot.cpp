@@ -133,24 +133,11 @@ class gltf_judge {
   std::map<std::string, gltf_axis> fits_;  // links whose meshes fit in one way alone
 };
 
-}  // namespace
-
-std::vector<Eigen::Isometry3d> robot::poses(std::span<const double> configuration, joint_options options) const {
-  const auto link_poses = tree_.link_poses(configuration, options);
-  std::vector<Eigen::Isometry3d> made;
-  for (const auto& part : parts_) made.push_back(link_poses[part.link]);
-  return made;
-}
-
-Eigen::Isometry3d robot::link_pose(const std::string& link, std::span<const double> configuration,
-                                   joint_options options) const {
-  return tree_.link_poses(configuration, options)[tree_.link(link)];
-}
-
-robot load_robot(const std::filesystem::path& urdf, const robot_options& options) {
+/// What `read` returns, with its geometry; `urdf` is where meshes are looked for from.
+template <class Read>
+robot robot_of(const std::filesystem::path& urdf, const robot_options& options, Read read) {
   if (!(options.tessellation > 0)) throw std::invalid_argument("the tessellation error must be above 0");
-  urdf_file file =
-      within_memory(urdf.string(), [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
+  urdf_file file = within_memory(urdf.string(), read);
   for (const auto& name : options.exclude_links)
     if (std::none_of(file.links.begin(), file.links.end(), [&](const auto& link) { return link.name == name; }))
       throw std::invalid_argument("the robot has no link " + io::quoted(name) + " to exclude");
@@ -198,6 +185,29 @@ robot load_robot(const std::filesystem::path& urdf, const robot_options& options
   for (const std::string& name : reader.unused_packages())
     file.notes.add("was given, and no mesh that was read is in it", "package " + io::quoted(name));
   return {file.name, file.tree, std::move(parts), file.notes.sentences()};
+}
+
+}  // namespace
+
+std::vector<Eigen::Isometry3d> robot::poses(std::span<const double> configuration, joint_options options) const {
+  const auto link_poses = tree_.link_poses(configuration, options);
+  std::vector<Eigen::Isometry3d> made;
+  for (const auto& part : parts_) made.push_back(link_poses[part.link]);
+  return made;
+}
+
+Eigen::Isometry3d robot::link_pose(const std::string& link, std::span<const double> configuration,
+                                   joint_options options) const {
+  return tree_.link_poses(configuration, options)[tree_.link(link)];
+}
+
+robot load_robot(const std::filesystem::path& urdf, const robot_options& options) {
+  return robot_of(urdf, options, [&] { return read_urdf(urdf.string(), options.limits, options.strict); });
+}
+
+robot load_robot_text(std::string_view text, const std::filesystem::path& beside, const robot_options& options) {
+  return robot_of(beside, options,
+                  [&] { return read_urdf_text(text, beside.string(), options.limits, options.strict); });
 }
 
 }  // namespace clearance::io

@@ -314,11 +314,14 @@ std::size_t declaration_after_blanks(std::string_view text) {
 }
 
 urdf_file read_urdf(const std::string& file, const mesh_limits& limits, bool strict) {
-  const std::string text = read_bytes(file, {.piped = limits.bytes});
+  return read_urdf_text(read_bytes(file, {.piped = limits.bytes}), file, limits, strict);
+}
+
+urdf_file read_urdf_text(std::string_view text, const std::string& file, const mesh_limits& limits, bool strict) {
   if (text.size() > limits.bytes)
     refuse(file, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");
   const std::size_t begin = declaration_after_blanks(text);
-  const xml_element root = read_xml(std::string_view(text).substr(begin), file, limits, xml_prefixes::any);
+  const xml_element root = read_xml(text.substr(begin), file, limits, xml_prefixes::any);
   if (root.name != "robot") refuse(file, "is not a URDF file: it has no element robot", root.line);
 
   urdf_file made;

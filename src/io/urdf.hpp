@@ -82,5 +82,8 @@ std::size_t declaration_after_blanks(std::string_view text);
 /// the link or joint, if something that decides where geometry is cannot be read, is missing or is unknown. `strict`
 /// refuses what would be noted.
 urdf_file read_urdf(const std::string& file, const mesh_limits& limits = {}, bool strict = false);
+/// The same of the text itself; `file` is what errors call it.
+urdf_file read_urdf_text(std::string_view text, const std::string& file, const mesh_limits& limits = {},
+                         bool strict = false);
 
 }  // namespace clearance::io

@@ -192,6 +192,24 @@ TEST_CASE("a part is all shapes of one link, each at its origin, and links witho
   CHECK(r.link_pose("frame", r.kinematics().rest()).isApprox(Eigen::Isometry3d::Identity()));
 }
 
+TEST_CASE("a description's text is the robot of its file, and its meshes are found beside a file that need not exist") {
+  const robot_folder folder;
+  folder.put("m/t.obj", triangle);
+  const std::string text =
+      robot(a_link("base") + a_link("arm", collision(mesh("m/t.obj"))) + joint("j", "revolute", "base", "arm"));
+  const io::robot of_file = load_robot(folder.put("r.urdf", text));
+  const io::robot of_text = io::load_robot_text(text, folder.path / "no_such_file");
+  REQUIRE(of_text.parts().size() == 1);
+  CHECK(of_text.name() == of_file.name());
+  CHECK(of_text.parts()[0].mesh.vertices == of_file.parts()[0].mesh.vertices);
+  CHECK(of_text.kinematics().movable(0).name == "j");
+  CHECK(says(sentence([&] { io::load_robot_text("<robot", folder.path / "the text"); }), "the text"));
+  CHECK(says(sentence([&] { io::load_robot_text(text, "elsewhere/r.urdf"); }), "t.obj"));
+  io::robot_options short_text;
+  short_text.limits.bytes = 20;
+  CHECK(says(sentence([&] { io::load_robot_text(text, folder.path / "r", short_text); }), "limit of 20 bytes"));
+}
+
 TEST_CASE("joints keep the file's order, whatever else is called joint, and mimic and limits come from the file") {
   const robot_folder folder;
   const auto file = folder.put(

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clearance::io {
@@ -88,5 +89,8 @@ class robot {
 /// Reads a URDF file and all its geometry. A part is a link that has geometry; parts keep the file's order. Throws
 /// std::runtime_error if a file is damaged or missing, std::invalid_argument if a link to exclude does not exist.
 robot load_robot(const std::filesystem::path& urdf, const robot_options& options = {});
+/// The same of a description's text, such as ROS's robot_description. Meshes are found as from a file at `beside`,
+/// which need not exist; errors call the text so.
+robot load_robot_text(std::string_view text, const std::filesystem::path& beside, const robot_options& options = {});
 
 }  // namespace clearance::io
