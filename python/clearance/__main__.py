@@ -13,7 +13,7 @@ import re
 import shutil
 import sys
 
-from . import commands
+from . import __version__, commands
 
 
 def compiled_command():
@@ -63,6 +63,7 @@ def main(arguments=None):
               "query, plan, pack, info and demo are of the compiled command, which is not on the PATH", file=sys.stderr)
         return 1
     parser = argparse.ArgumentParser(prog="clearance", description="How far a robot is from what its sensors see.")
+    parser.add_argument("--version", action="version", version=f"clearance {__version__}")
     of = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     its = {}
     for name, module in sorted(known.items()):

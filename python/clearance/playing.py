@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A recording played past a robot: one row for each cloud or depth image, at the time of its stamp."""
 
+from __future__ import annotations
+
 import collections
 import csv
 import dataclasses
@@ -8,6 +10,8 @@ import json
 import math
 import os
 import pathlib
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -35,13 +39,13 @@ class Row:
     upper: float = math.inf
     link: str = ""
     point: int | None = None
-    at: tuple | None = None
-    nearest: tuple | None = None
+    at: tuple[float, float, float] | None = None
+    nearest: tuple[float, float, float] | None = None
     seen: int = 0
     valid: int = 0
-    dropped: dict = dataclasses.field(default_factory=dict)
+    dropped: dict[str, int] = dataclasses.field(default_factory=dict)
     note: str = ""
-    parts: dict | None = None  # the distance to each part, if the question was MinDistancePerPart
+    parts: dict[str, float] | None = None  # the distance to each part, if the question was MinDistancePerPart
     checked: float | None = None  # the distance by NumPy, if a check was asked for
 
     def say(self, sentence):
@@ -375,27 +379,27 @@ def the_robot(recipe):
 
 
 def play(
-    path,
-    robot,
+    path: str | os.PathLike[str] | recordings.Messages,
+    robot: _core.Robot | str | os.PathLike[str] | Mapping[str, Any],
     *,
-    topics=None,
-    question=None,
-    device="cpu",
-    base_frame=None,
-    joint_topic=None,
-    max_age=0.1,
-    check=False,
-    joints=None,
-    tf_topics=None,
-    camera_info=None,
-    nearest=0.0,
-    farthest=math.inf,
-    zero_is_missing=False,
-    cloud_scale=1.0,
-    crop=(),
-    each=None,
-    only=None,
-):
+    topics: Sequence[str] | None = None,
+    question: _core.MinDistance | _core.MinDistancePerPart | _core.MinDistanceSupported | None = None,
+    device: str = "cpu",
+    base_frame: str | None = None,
+    joint_topic: str | Sequence[str] | None = None,
+    max_age: float = 0.1,
+    check: bool = False,
+    joints: Mapping[str, float] | Sequence[float] | None = None,
+    tf_topics: Sequence[str] | None = None,
+    camera_info: str | Mapping[str, str] | None = None,
+    nearest: float = 0.0,
+    farthest: float = math.inf,
+    zero_is_missing: bool = False,
+    cloud_scale: float = 1.0,
+    crop: Sequence[Mapping[str, Any]] = (),
+    each: Callable[[Row, Sight], object] | None = None,
+    only: Collection[tuple[int | None, str]] | None = None,
+) -> Played:
     """Gives a Row for each PointCloud2 and depth image of a recording: how far the robot was from what was seen.
 
     path: an MCAP file, a rosbag2 folder or database, or a ROS 1 bag; or recordings.Messages. It is read as rows are
@@ -518,18 +522,18 @@ class Played:
         ]
         self._rows = _rows(recording, watch, frames, others, named, self._pictures)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Row]:
         return self
 
-    def __next__(self):
+    def __next__(self) -> Row:
         return next(self._rows)
 
-    def close(self):
+    def close(self) -> None:
         """Closes the recording before its end."""
         self._rows.close()
 
     @property
-    def notes(self):
+    def notes(self) -> list[str]:
         pictures = [f"{topic} ({what})" for topic, what in sorted(self._pictures.items())]
         found = [f"not read: {', '.join(self._unread)}"] if self._unread else []
         if pictures:

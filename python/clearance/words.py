@@ -49,31 +49,33 @@ def pairs(words, option):
 
 
 def add_joints(parser, what):
-    """The two options about joints, as the compiled command has them. what: which joints they are."""
+    """The option about joints, by either of its names. what: which joints they are."""
     parser.add_argument(
-        "--joint", metavar="NAME=VALUE", action="append", default=[], help=f"radians or metres, of {what}; once for each"
-    )
-    parser.add_argument(
-        "--joints", metavar="NAME=VALUE,...", help="several of them; or VALUE,... of all joints in the file's order"
+        "--joint",
+        "--joints",
+        metavar="NAME=VALUE,...",
+        action="append",
+        default=[],
+        help=f"radians or metres, of {what}; may be given several times; or once VALUE,... of all joints in the file's order",
     )
 
 
 def joints_of(asked):
-    """Of --joint and --joints: {joint: value}, or a list of all values."""
-    given = [(word, "--joint") for word in asked.joint]
-    words = [word for word in (asked.joints or "").split(",") if word]
+    """Of --joint: {joint: value}, or a list of all values."""
+    words = [word for text in asked.joint for word in text.split(",") if word]
     if words and not any("=" in word for word in words):
-        if given:
-            raise ValueError("--joints has the values of all joints, so --joint cannot give another")
+        if len(asked.joint) > 1:
+            raise ValueError("--joints has the values of all joints, so it is given once")
         try:
-            return numbers(asked.joints, None, "--joints")
+            return numbers(asked.joint[0], None, "--joints")
         except ValueError:
             raise ValueError(
-                f"--joints takes NAME=VALUE,..., or the values of all joints, not {asked.joints!r}"
+                f"--joints takes NAME=VALUE,..., or the values of all joints, not {asked.joint[0]!r}"
             ) from None
-    given += [(word, "--joints") for word in words]
-    named = pairs([word for word, _ in given], "--joints" if words else "--joint")
-    return {name: numbers(value, 1, f"--joint {name}=")[0] for name, value in named.items()}
+    bare = [word for word in words if "=" not in word]
+    if bare:
+        raise ValueError(f"--joints takes NAME=VALUE of each joint, or only values; {bare[0]!r} has no name")
+    return {name: numbers(value, 1, f"--joint {name}=")[0] for name, value in pairs(words, "--joint").items()}
 
 
 def by_name(robot, joints):

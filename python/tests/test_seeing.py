@@ -674,6 +674,12 @@ def test_the_help_of_run_is_that_of_both_commands(tmp_path, compiled):
     assert "--report FILE.html" in done.stdout and done.stdout.rstrip().endswith("what the compiled command takes")
 
 
+def test_the_command_says_its_version(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0 and capsys.readouterr().out == f"clearance {clearance.__version__}\n"
+
+
 def test_a_run_needs_the_compiled_command_and_not_this_one_again(tmp_path, monkeypatch, capsys):
     script = tmp_path / "clearance"
     script.write_text("#!/bin/sh\nexec python3 -c 'from clearance.__main__ import main' \n")
@@ -850,7 +856,7 @@ def test_view_takes_a_joint_that_follows_another_by_either_option(tmp_path, monk
         (["--joints", "elbow"], "NAME=VALUE"),
         (["--joints", "elbow=x"], "--joint elbow="),
         (["--joints", "0.1,0.2"], "--joints has 2 values, and the robot has 5 joints"),
-        (["--joints", "0,0,0", "--joint", "elbow=1"], "--joint cannot give another"),
+        (["--joints", "0,0,0", "--joint", "elbow=1"], "'0' has no name"),
         (["--joint", "elbow=1", "--joints", "elbow=2"], "once for each name"),
         (["--zones", "a"], "--zones takes"),
         (["--picture", "a.gif"], ".png"),

@@ -4,28 +4,36 @@
 Everything draws the same plain description, scenes.Scene.
 """
 
+from __future__ import annotations
+
+import os
 import time
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from .pictures import picture
 from .pictures import picture as write_picture  # show has an argument of the name
 from .scenes import Scene, least_of, scene
 
+if TYPE_CHECKING:
+    from .._core import Array, Cloud, Robot
+
 __all__ = ["Scene", "least_of", "picture", "scene", "show"]
 
 
 def show(
-    robot,
-    points=None,
-    joints=None,
+    robot: Robot | Scene,
+    points: Array | Cloud | None = None,
+    joints: Array | Mapping[str, float] | None = None,
     *,
-    rerun=None,
-    picture=None,
-    port=8080,
-    host="127.0.0.1",
-    wait=True,
-    remake=None,
-    **what,
-):
+    rerun: str | os.PathLike[str] | None = None,
+    picture: str | os.PathLike[str] | None = None,
+    port: int = 8080,
+    host: str = "127.0.0.1",
+    wait: bool = True,
+    remake: Callable[[str], Robot] | None = None,
+    **what: Any,
+) -> Any:
     """Shows a robot before what its sensor sees, with the shortest segment and its number.
 
     rerun="out.rrd" writes a recording for rerun, picture="out.png" a still picture; the file's path is returned (of

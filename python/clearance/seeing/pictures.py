@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A still picture of a scene, with nothing but NumPy."""
 
+from __future__ import annotations
+
 import math
+import os
 import pathlib
 import textwrap
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import colours
 from .raster import Canvas, png, unit
 from .scenes import Scene, metres, scene
+
+if TYPE_CHECKING:
+    from .._core import Array, Cloud, Robot
 
 
 def _corners(part):
@@ -146,18 +154,18 @@ def render(seen, **options):
 
 
 def picture(
-    robot,
-    points=None,
-    joints=None,
+    robot: Robot | Scene,
+    points: Array | Cloud | None = None,
+    joints: Array | Mapping[str, float] | None = None,
     *,
-    output="clearance.png",
-    width=960,
-    height=640,
-    azimuth=None,
-    elevation=24.0,
-    spheres=False,
-    **what,
-):
+    output: str | os.PathLike[str] = "clearance.png",
+    width: int = 960,
+    height: int = 640,
+    azimuth: float | None = None,
+    elevation: float = 24.0,
+    spheres: bool = False,
+    **what: Any,
+) -> pathlib.Path:
     """Writes a PNG picture of a robot before a cloud, with the shortest segment and its number; returns the path.
 
     robot, points, joints and `what`: as in show and in a call of Query; or robot is a Scene. azimuth and elevation:
