@@ -7,6 +7,7 @@ What is read is what clang-format leaves: a struct at the library's namespace, i
 declaration a line. Member pointers are written, so a compiler notices what was read wrongly.
 """
 
+import keyword
 import pathlib
 import re
 import sys
@@ -18,10 +19,42 @@ METHOD = re.compile(r"  (?:const )?([\w:]+(?:<.*?>)?(?:&| )?)\s?(\w+)\((.*?)\) c
 OWN = {"vec3", "position", "distance_certainty"}
 # Options that no question has: `uncertain` takes them.
 OF_CLOUDS = {"kinect_noise", "stereo_noise", "tof_noise", "lidar_noise"}
+# What functions return, and what counts of dropped points are of.
+OF_FUNCTIONS = {"motion_clearance_result", "drop_reason"}
+
+# What a member is that a headline or its neighbour explains in C++, for Python's help() of it alone.
+MEANS = {
+    "state": "What the bracket means for a robot that is about to move.", "distance": "Metres; infinite without a pair.",
+    "lower": "Metres: nothing is nearer; 0 if that is not certain.", "upper": "Metres: something certainly is this near.",
+    "cloud": "Which cloud of the call; None without a pair.", "point": "Its number in its cloud, as in the input.",
+    "part": "The number of the robot's part; None without a pair.", "primitive": "Which sphere or triangle of its part.",
+    "at": "The point in the world, metres.", "nearest": "The nearest place on the robot in the world, metres.",
+    "normal": "The unit vector from the robot to the point; (0, 0, 0) if there is none.",
+    "seen": "How many points or pixels were looked at.", "valid": "How many of them are valid.",
+    "counts": "How many points were seen, how many are valid, and why the others are not.",
+    "parts": "Of each part, in the order of the robot's parts; or how many parts there are.",
+    "all": "Of all together; of each part of each configuration, one after another.",
+    "of": "One for each configuration, in the shape that the configurations have.",
+    "points": "How many points.", "pairs": "Pairs of a point and a part, of each part the nearest first.",
+    "per_part": "How many of each part there are at most.", "offsets": "Where each part's begin, and the end of all.",
+    "nominal": "As if nothing were uncertain.", "certain": "The pair that is least far apart for certain.",
+    "shares": "What the uncertainty is made of, metres.", "calibration": "Of the sensor's pose, metres.",
+    "time": "Of the age of the cloud, metres.", "delay": "Of the time until the robot stops, metres.",
+    "rounding": "Of float arithmetic, metres.", "uncertain": "How many are perhaps the robot's.",
+    "nearest_point": "That point's number in its cloud.", "first_point": "That point's number in its cloud.",
+    "min_points": "So many points make a zone count.", "k": "How many of each part.",
+    "queries": "How many times were asked.", "to": "Where that piece ends.",
+    "first_not_free": "The first of each trajectory that is not free, counted from its beginning.",
+    "sum": "All of them together, metres.", "size": "How many configurations there are.",
+}
 
 
 def python_name(name):
     return "".join(word.capitalize() for word in name.split("_"))
+
+
+def member_name(name):
+    return name + "_" * keyword.iskeyword(name)
 
 
 def declarators(text):
@@ -97,7 +130,7 @@ def read_members(lines, at, made):
         if re.match(r" (private|protected):", line):
             seen = False
         elif line.startswith("  using result = "):
-            made.question = made.header.parent.name == "questions"  # one beside them asks several: C++'s alone
+            made.question = True
         elif m := re.match(r"  using (out|searched) = (.*?);", line):
             made.out = m[2] if m[1] == "out" else "of*"
         elif line == "  static constexpr bool each_part = true;":
@@ -146,7 +179,7 @@ def out_arrays(out, all_of, to="to"):
 
 
 def reachable(all_of):
-    wanted = [d for d in all_of.values() if d.question or d.name in OF_CLOUDS]
+    wanted = [d for d in all_of.values() if d.question or d.name in OF_CLOUDS | OF_FUNCTIONS]
     chosen = {}
     for name in OF_CLOUDS:
         all_of[name].option = True
@@ -163,10 +196,9 @@ def reachable(all_of):
                 all_of[kind].option = True
         if d.question:
             text = (include_folder / d.header).read_text()
-            own = text[text.index(f"struct {d.name} {{"):]
-            result = re.search(r"using result = (.*);", own)[1]
+            own = re.search(rf"^struct {d.name} [:\w ]*\{{", text, re.MULTILINE).start()
+            result = re.search(r"using result = (.*);", text[own:])[1]
             wanted += [all_of[w] for w in words(result) if w in all_of]
-    chosen["drop_reason"] = all_of["drop_reason"]  # of which the counts of dropped points are
     return [d for d in all_of.values() if d.name in chosen]
 
 
@@ -183,11 +215,11 @@ def write(chosen, all_of, output):
                      f"  static constexpr bool question = false, option = false;\n"
                      f"  static constexpr auto values = std::make_tuple({values});\n}};\n")
             continue
-        members = ", ".join(f"member_as{{{quoted(name)}, &clearance::{d.name}::{name}, {quoted(said)}}}"
+        members = ", ".join(f"member_as{{{quoted(member_name(name))}, &clearance::{d.name}::{name}, {quoted(said or MEANS.get(name, ''))}}}"
                             for name, _, said in d.members)
         methods = ", ".join(
             f"method_as{{{quoted(name)}, [](const clearance::{d.name}& r{''.join(', ' + a for a in given)})"
-            f" {{ return r.{name}({', '.join(a.split()[1] for a in given)}); }}, {quoted(said)}"
+            f" {{ return r.{name}({', '.join(a.split()[1] for a in given)}); }}, {quoted(said or MEANS.get(name, ''))}"
             f"{''.join(', ' + quoted(a.split()[1]) for a in given)}}}"
             for name, said, given in d.methods if not d.question)
         text += (f"template <>\nstruct declared<clearance::{d.name}> {{\n"

@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import clearance
 
@@ -31,7 +31,7 @@ def ball(centre: tuple[float, float, float], radius: float) -> NDArray[np.float3
 
 
 # [monitor]
-def first_too_near(ask: "clearance.Query[clearance.MinDistancesResult]", seen: object, plan: NDArray[np.float64],
+def first_too_near(ask: "clearance.Query[clearance.MinDistancesResult]", seen: ArrayLike, plan: NDArray[np.float64],
                    margin: float) -> int | None:
     """The number of the first configuration that is not certainly farther away than the margin."""
     of = ask(seen, joints=plan).of

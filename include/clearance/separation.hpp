@@ -25,8 +25,8 @@ std::optional<double> approach_speed(const Witness& w, const Eigen::Vector3d& ve
   return normal.dot(velocity + turning.cross(nearest - about) - point_velocity);
 }
 
-/// The terms of the protective separation distance of ISO/TS 15066 (speed and separation monitoring). No term has a
-/// default: measure each or take it from the standard. A missing term is refused.
+/// The terms of the protective separation distance of ISO/TS 15066, since 2025 in ISO 10218-2 (speed and separation
+/// monitoring). No term has a default: measure each or take it from the standard. A missing term is refused.
 struct separation_terms {
   double human_speed = not_a_number;        ///< v_h: the human's speed towards the robot, m/s.
   double robot_speed = not_a_number;        ///< v_r: the robot's speed towards the human, m/s; 0 if it moves away.

@@ -1,22 +1,41 @@
 # Written by python/stubs.
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 import enum
-from typing import Any, Generic, NoReturn, TypeVar, overload
+from os import PathLike
+from typing import Any, Generic, Literal, NoReturn, Protocol, TypeVar, overload
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
 Answer = TypeVar("Answer")
 
+class _CanDlpack(Protocol):
+    def __dlpack__(self, *given: Any, **named: Any) -> Any: ...
+
+class _CanCuda(Protocol):
+    @property
+    def __cuda_array_interface__(self) -> Any: ...
+
+_Array = ArrayLike | _CanDlpack | _CanCuda
+
 none: int = 4294967295
 
 class DistanceCertainty:
     """How certain each distance of an answer is: lower() of it is proven."""
 
-    def lower(self, distance: float, part: object | None = None) -> float:
+    def lower(self, distance: float, part: int | None = None) -> float:
         """
         The solid is at least this far away, metres; 0 if nothing more is certain. part: whose distance it is; where the answer keeps each part's gap and tolerance, only that part's are taken off, and IndexError is raised for a part that is not there.
         """
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        Of what it is made: errors of computing, and by how much parts may be nearer than their primitives, metres.
+        """
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
     def __repr__(self) -> str: ...
 
@@ -26,46 +45,62 @@ class Robot:
     """
 
     @staticmethod
-    def from_urdf(file: object, model: str = 'spheres', spheres: object | None = None, geometry: str = 'collision', packages: Mapping[str, object] = {}, exclude_links: Sequence[str] = [], cache: bool = True, gltf_up: str | None = None) -> Robot:
+    def from_urdf(file: str | PathLike[str], model: Literal['spheres', 'triangles'] = 'spheres', spheres: int | None = None, geometry: Literal['collision', 'visual'] = 'collision', packages: Mapping[str, str | PathLike[str]] = {}, exclude_links: Sequence[str] = [], cache: bool = True, gltf_up: Literal['y', 'z'] | None = None) -> Robot:
         """
-        Reads a URDF file and its meshes. model: "spheres" (packed into each link, `spheres` of them; kept in the cache) or "triangles" (exact). packages: the folder of package://name. gltf_up: "y" or "z", which axis of glTF meshes is up; None: as a link's other geometry shows, else y, with a note. Raises RuntimeError if a file is damaged or missing, ValueError if an option cannot be.
+        Reads a URDF file and its meshes; or a description itself, such as ROS's robot_description or what xacro gives, whose meshes are found from the working folder. model: "spheres" (packed into each link, `spheres` of them; kept in the cache) or "triangles" (exact). packages: the folder of package://name. gltf_up: "y" or "z", which axis of glTF meshes is up; None: as a link's other geometry shows, else y, with a note. Raises RuntimeError if a file is damaged or missing, ValueError if an option cannot be.
         """
 
     @staticmethod
-    def from_meshes(meshes: Mapping[str, object], model: str = 'spheres', spheres: object | None = None, name: str = 'robot', cache: bool = True, gltf_up: str | None = None) -> Robot:
+    def from_meshes(meshes: Mapping[str, object], model: Literal['spheres', 'triangles'] = 'spheres', spheres: int | None = None, name: str = 'robot', cache: bool = True, gltf_up: Literal['y', 'z'] | None = None) -> Robot:
         """
         One part for each {name: mesh}: a file's name, (vertices (n, 3), triangles (m, 3)), or an object with vertices and faces. Metres. gltf_up: as of from_urdf.
         """
 
     @staticmethod
-    def from_spheres(spheres: Mapping[str, object], gap: float = 0.0, tolerance: float = 0.0, name: str = 'robot') -> Robot:
+    def from_spheres(spheres: Mapping[str, ArrayLike], gap: float = 0.0, tolerance: float = 0.0, name: str = 'robot') -> Robot:
         """
         One part for each {name: array (n, 4) of x, y, z, radius}. Metres. gap: the largest distance of the solid to its spheres (inf: unknown, so there is no lower bound).
         """
 
-    def with_fields(self, bytes: object | None = 1048576, device: str = 'cpu', cache: bool = True) -> Robot:
+    def with_fields(self, bytes: int = 1048576, device: str = 'cpu', cache: bool = True) -> Robot:
         """
         The same robot with a field of so many bytes around each part: questions about many configurations take less time then, and no answer changes. device: where it is sampled, "cpu" (seconds a part) or "cuda:0"; once, and kept in the cache. If a part can have none, none is used, and `notes` say why.
         """
 
     @property
     def has_fields(self) -> bool:
-        """Whether the robot was made by with_fields, and its fields are used."""
+        """Was it made by with_fields, and are they used?"""
 
-    def with_cells(self, bytes: object | None = 67108864, reach: float = 4.0, device: str = 'cpu') -> Robot:
+    def with_cells(self, bytes: int = 67108864, reach: float = 4.0, device: str = 'cpu') -> Robot:
         """
         The same robot with cells around each part, of at most so many bytes, as far as reach (metres): a GPU tells every point's distance in less time then, and no answer changes. device: where they are made, "cpu" (seconds a part) or "cuda:0". A part that can have none keeps its tree alone, and `notes` say why.
         """
 
     @property
     def has_cells(self) -> bool:
-        """Whether the robot was made by with_cells, and a part has cells."""
+        """Was it made by with_cells, and has a part some?"""
+
+    def attach(self, link: str, object: Robot, pose: ArrayLike | None = None) -> Robot:
+        """
+        The robot with an object that one of its links holds: joints, many configurations and gradients go on as before. object: a Robot without joints, of the same model, whose parts' names are new. pose: link-from-object, (4, 4). Near maps are not kept. Raises ValueError otherwise.
+        """
+
+    def release(self, parts: Sequence[str] = []) -> Robot:
+        """
+        The robot without these parts of what is attached, by their names; by default without all of it.
+        """
 
     @property
-    def name(self) -> str: ...
+    def attached(self) -> list[str]:
+        """The names of the parts that are attached."""
 
     @property
-    def model(self) -> str: ...
+    def name(self) -> str:
+        """As its description, or the caller, names it."""
+
+    @property
+    def model(self) -> str:
+        """"spheres" or "triangles": what stands for its solids."""
 
     @property
     def parts(self) -> list[str]:
@@ -111,32 +146,32 @@ class Robot:
     def rest(self) -> NDArray[numpy.float64]:
         """Each joint at 0, or at the limit nearest to it."""
 
-    def poses(self, joints: object | None = None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+    def poses(self, joints: _Array | Mapping[str, float] | None = None, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
         World-from-part of every part, (..., parts, 4, 4), for joints (..., joints) or {name: value}, where a joint of `mimics` may have a value of its own, too. base is world-from-base. Raises ValueError for values beyond the limits, and for joints that nothing is said of, unless rest: then they are at rest.
         """
 
-    def link_pose(self, link: str, joints: object | None = None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+    def link_pose(self, link: str, joints: _Array | Mapping[str, float] | None = None, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
-        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Arguments are those of poses.
+        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.
         """
 
-    def jacobian(self, joints: object | None, part: object | None, at: object | None, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+    def jacobian(self, joints: _Array | Mapping[str, float] | None, part: int | str, at: ArrayLike, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
         What each joint does to a part, (6, joints): the velocity of its point at `at` (world, metres), then its angular velocity, per radian or metre.
         """
 
-    def part_radii(self, joints: object | None, errors: object | None = None, speeds: object | None = None, delay: float = 0.0, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.void]:
+    def part_radii(self, joints: _Array | Mapping[str, float] | None, errors: ArrayLike | None = None, speeds: ArrayLike | None = None, delay: float = 0.0, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.void]:
         """
         How far each part may be from where joints have it, for CertainDistance(parts=...): records of joints and delay, metres. errors (rad, m): by how much joints may be wrong; speeds, per second, in the seconds of delay; one number, or one a joint. Raises ValueError for what is negative or not finite.
         """
 
-    def spheres(self, part: int) -> NDArray[numpy.float32]:
+    def spheres(self, part: int | str) -> NDArray[numpy.float32]:
         """
         The inner spheres of a part, (n, 4): x, y, z, radius in the part's frame. Metres.
         """
 
-    def mesh(self, part: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.uint32]]:
+    def mesh(self, part: int | str) -> tuple[NDArray[numpy.float64], NDArray[numpy.uint32]]:
         """
         The closed mesh of a part: vertices (n, 3) in its frame, metres, and triangles (m, 3).
         """
@@ -153,29 +188,34 @@ class Cloud:
     def __len__(self) -> int: ...
 
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """Where its array lies: "cpu", or "cuda:0" and so on."""
 
-def points(points: object, pose: object | None = None, *, nearest: float = 0.0, farthest: float = float('inf'), sensor: object | None = None, zero_is_missing: bool = False) -> Cloud:
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __repr__(self) -> str: ...
+
+def points(points: _Array, pose: ArrayLike | None = None, *, nearest: float = 0.0, farthest: float = float('inf'), sensor: ArrayLike | None = None, zero_is_missing: bool = False) -> Cloud:
     """
     A cloud of points, (n, 3) or (rows, columns, 3), float32 or float64, or structured with x, y, z; metres; read in place. pose: world-from-cloud, (4, 4). Points nearer to the sensor than nearest, or beyond farthest, do not count. zero_is_missing: a point at the sensor is none.
     """
 
-def depth_image(depth: object, intrinsics: object | None = None, pose: object | None = None, *, scale: object | None = None, nearest: float = 0.0, farthest: float = float('inf'), minus_infinity_is_near: bool = True, rays: object | None = None) -> Cloud:
+def depth_image(depth: _Array, intrinsics: ArrayLike | None = None, pose: ArrayLike | None = None, *, scale: float | None = None, nearest: float = 0.0, farthest: float = float('inf'), minus_infinity_is_near: bool = True, rays: _Array | None = None) -> Cloud:
     """
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
     """
 
-def cropped(cloud: object, *, inside: object | None = None, outside: object | None = None, pose: object | None = None, height: object | None = None, plane: object | None = None) -> Cloud:
-    """
-    The same cloud without points that are no obstacles by their place in the world, which are counted as cropped. Obstacles are inside a box (2, 3), lower and upper corner, and outside another (pose: world-from-box, of both); at a height (low, high); and farther than thickness from plane, (a, b, c, d, thickness), of ax + by + cz = d. Metres. A cloud may be cropped again, by four of these in all.
-    """
-
-def uncertain(cloud: object, noise: object | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
+def uncertain(cloud: Cloud, noise: _Array | KinectNoise | StereoNoise | TofNoise | LidarNoise | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
     """
     The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
     """
 
-def half_pixel_of(rays: object) -> float:
+def masked(cloud: Cloud, labels: _Array) -> Cloud:
+    """
+    The same cloud without some of its points, which are dropped as masked; the others keep their numbers. labels: one a point, read in place: uint8 as SelfFilter's labels (PointLabel.own is hidden), or bool (True is hidden). For queries on the cpu; Unseen has labels of its own.
+    """
+
+def half_pixel_of(rays: _Array | None) -> float:
     """
     Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.
     """
@@ -183,18 +223,18 @@ def half_pixel_of(rays: object) -> float:
 class Camera:
     """A calibrated camera of a ROS CameraInfo: which ray each pixel sees."""
 
-    def __init__(self, width: int, height: int, k: object, d: object = (), distortion_model: str = '', *, binning: Sequence[int] = [0, 0], roi: Sequence[int] = [0, 0, 0, 0]) -> None:
+    def __init__(self, width: int, height: int, k: ArrayLike, d: ArrayLike = (), distortion_model: str = '', *, binning: Sequence[int] = [0, 0], roi: Sequence[int] = [0, 0, 0, 0]) -> None:
         """
         width, height: pixels of the sensor. k: (3, 3), pixels. d: the coefficients of distortion_model (plumb_bob, rational_polynomial, equidistant, or none). binning: (x, y). roi: (x_offset, y_offset, width, height) in the sensor's pixels. Of a rectified image give P[:, :3] as k, and no d. ValueError if they contradict one another.
         """
 
     @property
     def width(self) -> int:
-        """The width of the images, in pixels."""
+        """Of the images, pixels."""
 
     @property
     def height(self) -> int:
-        """The height of the images, in pixels."""
+        """Of the images, pixels."""
 
     @property
     def intrinsics(self) -> tuple[float, float, float, float] | None:
@@ -207,30 +247,34 @@ class Camera:
         x / z and y / z of each pixel, (height, width, 2), float32: about a microsecond each. NaN where the lens folds or sees too wide, so the points of such pixels are dropped as not_finite. ValueError if all are.
         """
 
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __repr__(self) -> str: ...
+
 class PairDistance:
     """A pair of a point and a part, and their distance."""
 
     @property
     def cloud(self) -> int | None:
-        """The number of the point's cloud."""
+        """The point's number as in its cloud."""
 
     @property
     def point(self) -> int | None:
-        """The number of the point in its cloud."""
+        """Its number in its cloud, as in the input."""
 
     @property
     def part(self) -> int | None:
-        """The number of the part."""
+        """The number of the robot's part; None without a pair."""
 
     @property
     def primitive(self) -> int | None:
         """
-        The nearest primitive of the part; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+        The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
         """
 
     @property
     def distance(self) -> float:
-        """Metres, as computed."""
+        """Metres; infinite without a pair."""
 
     @property
     def link(self) -> str | None:
@@ -238,9 +282,91 @@ class PairDistance:
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PairDistance: ...
+
+    def __deepcopy__(self, memo: Any) -> PairDistance: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+class MotionClearanceResult:
+    """
+    The clearance over a motion. lower also covers the times between those that were asked. Times go from 0 to 1.
+    """
+
+    @property
+    def state(self) -> State:
+        """
+        free: lower > margin. collision: at time some point is certainly not farther than margin. possible: neither. no_data: no valid point. Of uncertain clouds lower is about all places where points may be, and upper is not known (infinite).
+        """
+
+    @property
+    def lower(self) -> float:
+        """Metres: at no time is a point nearer. 0 if that is not certain."""
+
+    @property
+    def upper(self) -> float:
+        """Metres: at time some point certainly is this near."""
+
+    @property
+    def time(self) -> float:
+        """The asked time with the least upper,"""
+
+    @property
+    def nearest(self) -> MinDistanceResult:
+        """and the answer of min_distance_per_part at that time."""
+
+    @property
+    def to(self) -> float:
+        """Where that piece ends."""
+
+    @property
+    def part(self) -> int | None:
+        """and the part that does."""
+
+    @property
+    def queries(self) -> int:
+        """How many times were asked."""
+
+    @property
+    def settled(self) -> bool:
+        """
+        lower is as good as tolerance asks, or as it can be. False: the queries were used up.
+        """
+
+    @property
+    def link(self) -> str | None:
+        """The name of that part, or None."""
+
+    def __str__(self) -> str: ...
+
+    @property
+    def from_(self) -> float: ...
+
+    def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> MotionClearanceResult: ...
+
+    def __deepcopy__(self, memo: Any) -> MotionClearanceResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class DropReason(enum.IntEnum):
     """
-    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then. cropped: it is no obstacle by its place.
+    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
     """
 
     none = 0
@@ -256,8 +382,6 @@ class DropReason(enum.IntEnum):
     masked = 5
 
     too_close = 6
-
-    cropped = 7
 
 class Hiding:
     """Which room behind its pixels an image hides, in metres of z."""
@@ -432,77 +556,96 @@ class UncertaintyShares:
 
     @property
     def noise(self) -> float:
-        """What the sensor's noise adds to the point's radius."""
+        """Of the point."""
 
     @property
     def calibration(self) -> float:
-        """What an inexact pose of the sensor adds to the point's radius."""
+        """Of the sensor's pose, metres."""
 
     @property
     def time(self) -> float:
-        """What an obstacle's motion since the point was seen adds to its radius."""
+        """Of the age of the cloud, metres."""
 
     @property
     def joints(self) -> float:
-        """What inexact joints add to the part's radius."""
+        """Of the part."""
 
     @property
     def delay(self) -> float:
-        """What the part's motion while the answer is made adds to its radius."""
+        """Of the time until the robot stops, metres."""
 
     @property
     def gap(self) -> float:
         """The part's gap and tolerance."""
 
     @property
-    def balls(self) -> float:
-        """The cloud's gap, if its points are balls that fill something."""
-
-    @property
     def rounding(self) -> float:
-        """What arithmetic may have lost."""
+        """Of float arithmetic, metres."""
 
     def sum(self) -> float:
-        """All shares together."""
+        """All of them together, metres."""
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> UncertaintyShares: ...
+
+    def __deepcopy__(self, memo: Any) -> UncertaintyShares: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class CertainPair:
     """
-    The pair of a part that is least far apart for certain. distance is what was measured, lower what is left of it. The pair need not be the nearest. Without a valid point the distance is infinite.
+    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
     """
 
     @property
-    def distance(self) -> float: ...
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the robot's part; None without a pair."""
 
     @property
-    def cloud(self) -> int | None: ...
+    def cloud(self) -> int | None:
+        """Which cloud of the call; None without a pair."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def primitive(self) -> int | None: ...
+    def primitive(self) -> int | None:
+        """Which sphere or triangle of its part."""
 
     @property
-    def at(self) -> tuple[float, float, float]: ...
+    def at(self) -> tuple[float, float, float]:
+        """The point in the world, metres."""
 
     @property
-    def nearest(self) -> tuple[float, float, float]: ...
+    def nearest(self) -> tuple[float, float, float]:
+        """The nearest place on the robot in the world, metres."""
 
     @property
-    def normal(self) -> tuple[float, float, float]: ...
+    def normal(self) -> tuple[float, float, float]:
+        """
+        The unit vector from the robot to the point; (0, 0, 0) if there is none.
+        """
 
     @property
     def lower(self) -> float:
-        """Metres that certainly lie between the point and the part."""
+        """Metres: nothing is nearer; 0 if that is not certain."""
 
     @property
     def shares(self) -> UncertaintyShares:
-        """What is taken off the distance, by its cause."""
+        """What the uncertainty is made of, metres."""
 
     @property
     def to_ball(self) -> float:
@@ -514,56 +657,108 @@ class CertainPair:
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> CertainPair: ...
+
+    def __deepcopy__(self, memo: Any) -> CertainPair: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class CertainDistanceResult:
     """
     lower <= distance to the solid <= upper if no radius is too small. certain is the pair that decides lower. collision: a point is inside by more than all radii, which of a part that is a mesh is not known: possible. nominal is what min_distance says about the same points.
     """
 
     @property
-    def state(self) -> State: ...
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
 
     @property
-    def lower(self) -> float: ...
+    def lower(self) -> float:
+        """Metres: nothing is nearer; 0 if that is not certain."""
 
     @property
-    def upper(self) -> float: ...
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
 
     @property
-    def nominal(self) -> MinDistanceResult: ...
+    def nominal(self) -> MinDistanceResult:
+        """As if nothing were uncertain."""
 
     @property
-    def certain(self) -> CertainPair: ...
+    def certain(self) -> CertainPair:
+        """The pair that is least far apart for certain."""
 
     @property
-    def parts(self) -> NDArray[numpy.void]: ...
+    def parts(self) -> NDArray[numpy.void]:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
     @property
     def anywhere(self) -> int:
-        """
-        The number of points that may be anywhere: if it is not 0, nothing is free.
-        """
+        """So many points may be anywhere: if it is not 0, nothing is free."""
 
     @property
     def any_radius(self) -> bool:
         """Some cloud was uncertain, or parts had radii."""
 
+    def of(self, part: int | str) -> CertainPair:
+        """
+        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        """
+
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> CertainDistanceResult: ...
+
+    def __deepcopy__(self, memo: Any) -> CertainDistanceResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class PartRadius:
     """By how much a part may be elsewhere. Metres."""
 
     @property
     def joints(self) -> float:
-        """How far it may be elsewhere because joints are not where they say."""
+        """Because joints are not where they say,"""
 
     @property
     def delay(self) -> float:
-        """How far it may be elsewhere because it moves while the answer is made."""
+        """and because it moves while the answer is made."""
 
     def sum(self) -> float:
-        """Both together."""
+        """All of them together, metres."""
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PartRadius: ...
+
+    def __deepcopy__(self, memo: Any) -> PartRadius: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class CertainDistance:
     """
@@ -571,10 +766,15 @@ class CertainDistance:
     """
 
     def __init__(self, parts: ArrayLike = ()) -> None:
-        """parts:"""
+        """
+        parts: Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
     @property
-    def parts(self) -> NDArray[numpy.void]: ...
+    def parts(self) -> NDArray[numpy.void]:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
     def __repr__(self) -> str: ...
 
@@ -596,25 +796,41 @@ class PointDistances:
     @property
     def part(self) -> NDArray[numpy.uint32]:
         """
-        If which is set, the nearest part of each point, of equally near ones the lowest; ~0u: none.
+        If which is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
         """
 
     @property
     def primitive(self) -> NDArray[numpy.uint32]:
-        """
-        If which is set, the nearest primitive of that part; ~0u: none, or the point is inside.
-        """
+        """Which sphere or triangle of its part."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def certain(self) -> DistanceCertainty:
         """
-        What is certain of each distance: the nearest part may be another in truth.
+        Of each distance: another part than the nearest may be nearer in truth.
         """
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PointDistances: ...
+
+    def __deepcopy__(self, memo: Any) -> PointDistances: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class Distances:
     """
@@ -624,7 +840,7 @@ class Distances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Whether to tell which part and primitive is nearest, too.
+        which: Also which part and primitive is nearest.
         """
 
     @property
@@ -633,7 +849,7 @@ class Distances:
 
     @property
     def which(self) -> bool:
-        """Whether to tell which part and primitive is nearest, too."""
+        """Also which part and primitive is nearest."""
 
     def __repr__(self) -> str: ...
 
@@ -656,25 +872,43 @@ class PartDistances:
 
     @property
     def points(self) -> int:
-        """The number of points of all clouds."""
+        """How many points."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def certain(self) -> DistanceCertainty:
-        """What is certain of each distance, by its part."""
+        """Of each distance, by its part."""
 
     @property
     def parts(self) -> int:
-        """The number of parts."""
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
-    def of(self, part: int) -> NDArray[numpy.float32]:
-        """
-        The distances of a part to all points. Raises IndexError if there is no such part.
-        """
+    def of(self, part: int | str) -> NDArray[numpy.float32]:
+        """Those of a part. Raises IndexError if there is no such part."""
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PartDistances: ...
+
+    def __deepcopy__(self, memo: Any) -> PartDistances: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class DistancesPerPart:
     """
@@ -714,19 +948,39 @@ class CollisionResult:
         """
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the robot's part; None without a pair."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def link(self) -> str | None:
         """The name of that part, or None."""
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> CollisionResult: ...
+
+    def __deepcopy__(self, memo: Any) -> CollisionResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class InCollision:
     """
@@ -761,7 +1015,8 @@ class InCollisionsResult:
     """
 
     @property
-    def of(self) -> NDArray[numpy.uint8]: ...
+    def of(self) -> NDArray[numpy.uint8]:
+        """One for each configuration, in the shape that the configurations have."""
 
     @property
     def counts(self) -> PointCounts:
@@ -774,14 +1029,32 @@ class InCollisionsResult:
         """
 
     @overload
-    def first_not_free(self, horizon: int) -> NDArray[numpy.uint64]: ...
+    def first_not_free(self, horizon: int) -> NDArray[numpy.uint64]:
+        """
+        The first of each trajectory that is not free, counted from its beginning.
+        """
 
     def trajectory(self, i: int, horizon: int) -> NDArray[numpy.uint8]:
         """
         If the configurations are several trajectories, [batch, horizon]: the states of trajectory i, and the first of each trajectory, counted from its beginning. Raises ValueError if they are not whole trajectories of horizon configurations, IndexError if there is no trajectory i.
         """
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> InCollisionsResult: ...
+
+    def __deepcopy__(self, memo: Any) -> InCollisionsResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class InCollisions:
     """
@@ -829,12 +1102,38 @@ class MinDistancePerPartResult:
     """The least distance of the robot, and of each part."""
 
     @property
-    def all(self) -> MinDistanceResult: ...
+    def all(self) -> MinDistanceResult:
+        """
+        Of all together; of each part of each configuration, one after another.
+        """
 
     @property
-    def parts(self) -> NDArray[numpy.void]: ...
+    def parts(self) -> NDArray[numpy.void]:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
+
+    def of(self, part: int | str) -> PartMinimum:
+        """
+        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        """
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> MinDistancePerPartResult: ...
+
+    def __deepcopy__(self, memo: Any) -> MinDistancePerPartResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class MinDistancePerPart:
     """
@@ -859,7 +1158,7 @@ class SupportedDistance:
     @property
     def state(self) -> State:
         """
-        What min_distance says about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
+        That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
         """
 
     @property
@@ -875,33 +1174,55 @@ class SupportedDistance:
         """
 
     @property
-    def cloud(self) -> int | None: ...
+    def cloud(self) -> int | None:
+        """Which cloud of the call; None without a pair."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the robot's part; None without a pair."""
 
     @property
-    def primitive(self) -> int | None: ...
+    def primitive(self) -> int | None:
+        """Which sphere or triangle of its part."""
 
     @property
     def isolated(self) -> int:
-        """The number of nearer points that are not confirmed."""
+        """The number of nearer points that are not confirmed,"""
 
     @property
     def nearest_isolated(self) -> PairDistance:
-        """The nearest of the points that are not confirmed."""
+        """and the first of them."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def link(self) -> str | None:
         """The name of that part, or None."""
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SupportedDistance: ...
+
+    def __deepcopy__(self, memo: Any) -> SupportedDistance: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class MinDistanceSupported:
     """
@@ -910,18 +1231,18 @@ class MinDistanceSupported:
 
     def __init__(self, min_points: int = 3, radius: float = 0.02, most: int = 4096) -> None:
         """
-        min_points: How many points confirm one, itself among them.
-        radius: Metres within which points confirm one another.
+        min_points: A point is confirmed by this many points, itself among them,
+        radius: within this many metres.
         most: The search ends after this many of the nearest points, each asked once.
         """
 
     @property
     def min_points(self) -> int:
-        """How many points confirm one, itself among them."""
+        """A point is confirmed by this many points, itself among them,"""
 
     @property
     def radius(self) -> float:
-        """Metres within which points confirm one another."""
+        """within this many metres."""
 
     @property
     def most(self) -> int:
@@ -943,7 +1264,8 @@ class MinDistancesResult:
     """
 
     @property
-    def of(self) -> NDArray[numpy.void]: ...
+    def of(self) -> NDArray[numpy.void]:
+        """One for each configuration, in the shape that the configurations have."""
 
     @overload
     def first_below(self, margin: float) -> int:
@@ -960,7 +1282,22 @@ class MinDistancesResult:
         If the configurations are several trajectories, [batch, horizon]: the results of trajectory i. Raises ValueError if they are not whole trajectories of horizon configurations, IndexError if there is no trajectory i.
         """
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> MinDistancesResult: ...
+
+    def __deepcopy__(self, memo: Any) -> MinDistancesResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class MinDistances:
     """
@@ -997,19 +1334,41 @@ class MinDistancesPerPartResult:
     """
 
     @property
-    def all(self) -> NDArray[numpy.void]: ...
+    def all(self) -> NDArray[numpy.void]:
+        """
+        Of all together; of each part of each configuration, one after another.
+        """
 
     @property
-    def parts(self) -> int: ...
+    def parts(self) -> int:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
-    def size(self) -> int: ...
+    def size(self) -> int:
+        """How many configurations there are."""
 
     def of(self, c: int) -> NDArray[numpy.void]:
         """
-        The results of a configuration's parts. Raises IndexError if there is no such configuration.
+        Those of a configuration. Raises IndexError if there is no such configuration.
         """
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> MinDistancesPerPartResult: ...
+
+    def __deepcopy__(self, memo: Any) -> MinDistancesPerPartResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class MinDistancesPerPart:
     """
@@ -1045,12 +1404,13 @@ class NearestK:
 
     def __init__(self, k: int = 1, d_max: float = float('inf')) -> None:
         """
-        k: 
+        k: How many of each part.
         d_max: Metres; farther points do not count.
         """
 
     @property
-    def k(self) -> int: ...
+    def k(self) -> int:
+        """How many of each part."""
 
     @property
     def d_max(self) -> float:
@@ -1071,22 +1431,41 @@ class NearestKResult:
 
     @property
     def per_part(self) -> int:
-        """The number of pairs in each part's list."""
+        """How many of each part there are at most."""
 
     @property
-    def pairs(self) -> NDArray[numpy.void]: ...
+    def pairs(self) -> NDArray[numpy.void]:
+        """Pairs of a point and a part, of each part the nearest first."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def certain(self) -> DistanceCertainty:
-        """What is certain of each pair's distance, by its part."""
+        """Of each pair's distance, by its part."""
 
-    def of(self, part: int) -> NDArray[numpy.void]:
-        """The pairs of a part. Raises IndexError if there is no such part."""
+    def of(self, part: int | str) -> NDArray[numpy.void]:
+        """Those of a part. Raises IndexError if there is no such part."""
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> NearestKResult: ...
+
+    def __deepcopy__(self, memo: Any) -> NearestKResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class PartWitnesses:
     """
@@ -1094,13 +1473,11 @@ class PartWitnesses:
     """
 
     def __init__(self, minima: NDArray[numpy.void]) -> None:
-        """
-        minima: Every part's least distance, as min_distance_per_part gives it.
-        """
+        """minima: As min_distance_per_part gives them."""
 
     @property
     def minima(self) -> NDArray[numpy.void]:
-        """Every part's least distance, as min_distance_per_part gives it."""
+        """As min_distance_per_part gives them."""
 
     def __repr__(self) -> str: ...
 
@@ -1116,17 +1493,31 @@ class SelfFilterCounts:
     """
 
     @property
-    def points(self) -> PointCounts: ...
+    def points(self) -> PointCounts:
+        """How many points."""
 
     @property
     def own(self) -> int:
-        """How many valid points are certainly the robot's."""
+        """Of the valid points."""
 
     @property
     def uncertain(self) -> int:
-        """How many valid points are perhaps the robot's."""
+        """How many are perhaps the robot's."""
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SelfFilterCounts: ...
+
+    def __deepcopy__(self, memo: Any) -> SelfFilterCounts: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class SelfFilterResult:
     """
@@ -1135,7 +1526,7 @@ class SelfFilterResult:
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """Whose each point is, in the order of the clouds and their points."""
+        """One per point of all clouds, in their order."""
 
     @property
     def offsets(self) -> NDArray[numpy.uint64]:
@@ -1146,9 +1537,27 @@ class SelfFilterResult:
         """The numbers of all valid points that are not hidden, ascending."""
 
     @property
-    def counts(self) -> SelfFilterCounts: ...
+    def counts(self) -> SelfFilterCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SelfFilterResult: ...
+
+    def __deepcopy__(self, memo: Any) -> SelfFilterResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class SelfFilter:
     """
@@ -1182,7 +1591,7 @@ class SignedDistances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Whether to tell which part and triangle is nearest, too.
+        which: Also which part and triangle is nearest.
         """
 
     @property
@@ -1191,7 +1600,7 @@ class SignedDistances:
 
     @property
     def which(self) -> bool:
-        """Whether to tell which part and triangle is nearest, too."""
+        """Also which part and triangle is nearest."""
 
     def __repr__(self) -> str: ...
 
@@ -1207,45 +1616,53 @@ class UnseenPart:
     """
 
     @property
-    def distance(self) -> float: ...
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the robot's part; None without a pair."""
 
     @property
-    def cloud(self) -> int | None: ...
+    def cloud(self) -> int | None:
+        """Which cloud of the call; None without a pair."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def primitive(self) -> int | None: ...
+    def primitive(self) -> int | None:
+        """Which sphere or triangle of its part."""
 
     @property
-    def at(self) -> tuple[float, float, float]: ...
+    def at(self) -> tuple[float, float, float]:
+        """The point in the world, metres."""
 
     @property
-    def nearest(self) -> tuple[float, float, float]: ...
+    def nearest(self) -> tuple[float, float, float]:
+        """The nearest place on the robot in the world, metres."""
 
     @property
-    def normal(self) -> tuple[float, float, float]: ...
+    def normal(self) -> tuple[float, float, float]:
+        """
+        The unit vector from the robot to the point; (0, 0, 0) if there is none.
+        """
 
     @property
     def lower(self) -> float:
-        """
-        Room that some camera hides and no camera sees is at least so far away.
-        """
+        """At least so far away is all that no camera sees and some camera hides."""
 
     @property
     def out_of_view(self) -> float:
         """
-        The share, 0 to 1, of the ball around the part that no camera shows; nothing is said about it. NaN if a ray image may show the rest.
+        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
         """
 
     @property
     def to_edge(self) -> float:
         """
-        If edges are asked for: at least so many metres lie between the ball around the part and all that no image shows. 0: some of the ball is not shown. NaN: there are ray images alone.
+        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
         """
 
     @property
@@ -1254,24 +1671,63 @@ class UnseenPart:
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> UnseenPart: ...
+
+    def __deepcopy__(self, memo: Any) -> UnseenPart: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class UnseenResult:
     """
     all: as a min_distance_result. If the robot reaches into what is hidden its state is unknown. seen counts pixels, valid those that hide room. With several cameras a place is hidden only if no camera sees it: lower holds for that, distance is an estimate, and upper is not known (infinite).
     """
 
     @property
-    def all(self) -> MinDistanceResult: ...
+    def all(self) -> MinDistanceResult:
+        """
+        Of all together; of each part of each configuration, one after another.
+        """
 
     @property
-    def parts(self) -> NDArray[numpy.void]: ...
+    def parts(self) -> NDArray[numpy.void]:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
 
     @property
     def own_shadow(self) -> MinDistanceResult:
         """
-        The least distance to what pixels of the robot's own points (masked) hide from all cameras together.
+        What pixels of the robot's own points (masked) hide, of all cameras together.
         """
 
+    def of(self, part: int | str) -> UnseenPart:
+        """
+        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        """
+
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> UnseenResult: ...
+
+    def __deepcopy__(self, memo: Any) -> UnseenResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class Unseen:
     """
@@ -1281,10 +1737,10 @@ class Unseen:
     def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
         """
         room: Where hidden room begins and ends.
-        half_pixel: What half_pixel_of says of a ray image's table; 0 without ray images.
-        labels: Whose each pixel of all clouds is, as self_filter gives it; or none.
-        places: Whether to tell of every part, as of the robot, at, nearest and normal.
-        edges: Whether to tell to_edge: how far every part is from the edge of the view.
+        half_pixel: For ray images: half_pixel_of their table.
+        labels: Of all pixels of all clouds, as self_filter gives them, or none.
+        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
+        edges: Also how far every part is from the edge of the view: to_edge.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
@@ -1294,23 +1750,21 @@ class Unseen:
 
     @property
     def half_pixel(self) -> float:
-        """What half_pixel_of says of a ray image's table; 0 without ray images."""
+        """For ray images: half_pixel_of their table."""
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """Whose each pixel of all clouds is, as self_filter gives it; or none."""
+        """Of all pixels of all clouds, as self_filter gives them, or none."""
 
     @property
     def places(self) -> bool:
         """
-        Whether to tell of every part, as of the robot, at, nearest and normal.
+        Also where every part is nearest: at, nearest and normal, as the robot always has.
         """
 
     @property
     def edges(self) -> bool:
-        """
-        Whether to tell to_edge: how far every part is from the edge of the view.
-        """
+        """Also how far every part is from the edge of the view: to_edge."""
 
     @property
     def radii(self) -> tuple[float, ...]:
@@ -1331,20 +1785,38 @@ class WithinResult:
 
     @property
     def offsets(self) -> NDArray[numpy.uint64]:
-        """Where each part's pairs begin, and the number of all."""
+        """Where each part's begin, and the end of all."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
-        """The pairs, with distances as computed, in metres."""
+        """Distances as computed, in metres."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def certain(self) -> DistanceCertainty:
-        """What is certain of each pair's distance, by its part."""
+        """Of each pair's distance, by its part."""
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> WithinResult: ...
+
+    def __deepcopy__(self, memo: Any) -> WithinResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class Within:
     """
@@ -1373,57 +1845,71 @@ class Zone:
 
     @property
     def points(self) -> int:
-        """How many points are in the zone."""
+        """How many points."""
 
     @property
     def nearest(self) -> float:
         """
-        The least distance of the zone's points, less their radii, as computed. Metres.
+        The least distance of its points, less their radii, as computed. Metres.
         """
 
     @property
     def nearest_cloud(self) -> int | None:
-        """The cloud of the nearest point."""
+        """The point at that distance; of equally near ones the lowest."""
 
     @property
     def nearest_point(self) -> int | None:
-        """
-        The nearest point's number in that cloud; of equally near ones the lowest.
-        """
+        """That point's number in its cloud."""
 
     @property
     def first_cloud(self) -> int | None:
-        """The lowest cloud that has a point in the zone."""
+        """The lowest of its points."""
 
     @property
     def first_point(self) -> int | None:
-        """The lowest number in that cloud of a point in the zone."""
+        """That point's number in its cloud."""
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> Zone: ...
+
+    def __deepcopy__(self, memo: Any) -> Zone: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class ZonesResult:
     """What is in the zones of each part."""
 
     @property
     def per_part(self) -> int:
-        """The number of zones of each part."""
+        """How many of each part there are at most."""
 
     @property
     def min_points(self) -> int:
-        """A zone with fewer points counts as empty (innermost)."""
+        """So many points make a zone count."""
 
     @property
     def zones(self) -> NDArray[numpy.void]:
         """The zones of a part, the innermost first, then those of the next part."""
 
     @property
-    def counts(self) -> PointCounts: ...
+    def counts(self) -> PointCounts:
+        """
+        How many points were seen, how many are valid, and why the others are not.
+        """
 
     @property
     def unseen(self) -> int:
         """Points that there was no time for; any of them may be in any zone."""
 
-    def of(self, part: int, z: int) -> Zone:
+    def of(self, part: int | str, z: int) -> Zone:
         """Zone z of a part. Raises IndexError if there is none."""
 
     def innermost(self) -> int:
@@ -1431,7 +1917,22 @@ class ZonesResult:
         The innermost zone of all parts with enough points: 0 is the nearest threshold, per_part means that all are empty. It is 0 for a frame without a valid point, without a part, with something too close to be measured, or with unseen points, because nothing is known then.
         """
 
+    def __str__(self) -> str: ...
+
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> ZonesResult: ...
+
+    def __deepcopy__(self, memo: Any) -> ZonesResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class Zones:
     """
@@ -1440,21 +1941,19 @@ class Zones:
 
     def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1, radii: float | ArrayLike = ()) -> None:
         """
-        thresholds: Metres, in ascending order: the same for every part, unless each_part is set.
-        each_part: thresholds are those of each part in turn, equally many.
+        thresholds: Metres, in ascending order: the same for every part,
+        each_part: or, if this is set, those of each part in turn, equally many.
         min_points: A zone with fewer counts as empty (innermost); its points are still reported.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
     def thresholds(self) -> tuple[float, ...]:
-        """
-        Metres, in ascending order: the same for every part, unless each_part is set.
-        """
+        """Metres, in ascending order: the same for every part,"""
 
     @property
     def each_part(self) -> bool:
-        """thresholds are those of each part in turn, equally many."""
+        """or, if this is set, those of each part in turn, equally many."""
 
     @property
     def min_points(self) -> int:
@@ -1493,18 +1992,35 @@ class PartMinimum:
     """
 
     @property
-    def distance(self) -> float: ...
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
 
     @property
-    def cloud(self) -> int | None: ...
+    def cloud(self) -> int | None:
+        """Which cloud of the call; None without a pair."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def primitive(self) -> int | None: ...
+    def primitive(self) -> int | None:
+        """Which sphere or triangle of its part."""
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PartMinimum: ...
+
+    def __deepcopy__(self, memo: Any) -> PartMinimum: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class PartWitness:
     """
@@ -1512,28 +2028,38 @@ class PartWitness:
     """
 
     @property
-    def distance(self) -> float: ...
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
 
     @property
-    def part(self) -> int | None: ...
+    def part(self) -> int | None:
+        """The number of the robot's part; None without a pair."""
 
     @property
-    def cloud(self) -> int | None: ...
+    def cloud(self) -> int | None:
+        """Which cloud of the call; None without a pair."""
 
     @property
-    def point(self) -> int | None: ...
+    def point(self) -> int | None:
+        """Its number in its cloud, as in the input."""
 
     @property
-    def primitive(self) -> int | None: ...
+    def primitive(self) -> int | None:
+        """Which sphere or triangle of its part."""
 
     @property
-    def at(self) -> tuple[float, float, float]: ...
+    def at(self) -> tuple[float, float, float]:
+        """The point in the world, metres."""
 
     @property
-    def nearest(self) -> tuple[float, float, float]: ...
+    def nearest(self) -> tuple[float, float, float]:
+        """The nearest place on the robot in the world, metres."""
 
     @property
-    def normal(self) -> tuple[float, float, float]: ...
+    def normal(self) -> tuple[float, float, float]:
+        """
+        The unit vector from the robot to the point; (0, 0, 0) if there is none.
+        """
 
     @property
     def link(self) -> str | None:
@@ -1541,22 +2067,52 @@ class PartWitness:
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PartWitness: ...
+
+    def __deepcopy__(self, memo: Any) -> PartWitness: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class PointCounts:
     """
     How many points a scan has seen, how many of them are valid, and why the others are not.
     """
 
     @property
-    def seen(self) -> int: ...
+    def seen(self) -> int:
+        """How many points or pixels were looked at."""
 
     @property
-    def valid(self) -> int: ...
+    def valid(self) -> int:
+        """How many of them are valid."""
 
     @property
     def dropped(self) -> dict[str, int]:
-        """How many points were dropped, by drop_reason; [none] stays 0."""
+        """Counts by drop_reason; [none] stays 0."""
+
+    def __str__(self) -> str: ...
 
     def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PointCounts: ...
+
+    def __deepcopy__(self, memo: Any) -> PointCounts: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
 
 class MinDistanceResult:
     """
@@ -1564,57 +2120,60 @@ class MinDistanceResult:
     """
 
     @property
-    def state(self) -> State: ...
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
 
     @property
     def distance(self) -> float:
         """Metres; to sphere parts signed, to triangle parts 0 inside."""
 
     @property
-    def lower(self) -> float: ...
+    def lower(self) -> float:
+        """Metres: nothing is nearer; 0 if that is not certain."""
 
     @property
-    def upper(self) -> float: ...
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
 
     @property
     def cloud(self) -> int | None:
-        """The number of the nearest point's cloud."""
+        """Which cloud of the call,"""
 
     @property
     def point(self) -> int | None:
-        """The number of the nearest point in its cloud."""
+        """which of its points (index as in the input),"""
 
     @property
     def part(self) -> int | None:
-        """The number of the nearest part."""
+        """which part,"""
 
     @property
     def primitive(self) -> int | None:
-        """
-        The number of the part's nearest primitive; of equally near ones the lowest.
-        """
+        """which of its primitives attains it; of equally near ones the lowest."""
 
     @property
     def at(self) -> tuple[float, float, float]:
-        """The nearest point, in world coordinates."""
+        """The point, in world coordinates,"""
 
     @property
     def nearest(self) -> tuple[float, float, float]:
-        """The primitive's point that is nearest to it, in world coordinates."""
+        """the nearest point of the primitive,"""
 
     @property
     def normal(self) -> tuple[float, float, float]:
-        """The unit vector from robot to point; (0,0,0) if there is none."""
+        """and the unit vector from robot to point; (0,0,0) if there is none."""
 
     @property
-    def seen(self) -> int: ...
+    def seen(self) -> int:
+        """How many points or pixels were looked at."""
 
     @property
-    def valid(self) -> int: ...
+    def valid(self) -> int:
+        """How many of them are valid."""
 
     @property
     def dropped(self) -> dict[str, int]:
-        """How many points were dropped, by drop_reason; [none] stays 0."""
+        """Counts by drop_reason; [none] stays 0."""
 
     @property
     def link(self) -> str | None:
@@ -1624,81 +2183,216 @@ class MinDistanceResult:
 
     def __repr__(self) -> str: ...
 
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> MinDistanceResult: ...
+
+    def __deepcopy__(self, memo: Any) -> MinDistanceResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+class SeenAndUnseenResult:
+    """As unseen, and as min_distance about the same pixels."""
+
+    @property
+    def all(self) -> MinDistanceResult:
+        """
+        Of all together; of each part of each configuration, one after another.
+        """
+
+    @property
+    def parts(self) -> NDArray[numpy.void]:
+        """
+        Of each part, in the order of the robot's parts; or how many parts there are.
+        """
+
+    @property
+    def own_shadow(self) -> MinDistanceResult:
+        """
+        What pixels of the robot's own points (masked) hide, of all cameras together.
+        """
+
+    @property
+    def seen(self) -> MinDistanceResult:
+        """Of all clouds. Pixels labelled own are dropped as masked."""
+
+    def of(self, part: int | str) -> UnseenPart:
+        """
+        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        """
+
+    def __str__(self) -> str: ...
+
+    def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SeenAndUnseenResult: ...
+
+    def __deepcopy__(self, memo: Any) -> SeenAndUnseenResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+class SeenAndUnseen:
+    """
+    Asks min_distance and unseen about one frame of images, on a device at the same time. Refused: as unseen. Images that are uncertain have no such minimum: certain_distance is asked about them.
+    """
+
+    def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
+        """
+        room: Where hidden room begins and ends.
+        half_pixel: For ray images: half_pixel_of their table.
+        labels: Of all pixels of all clouds, as self_filter gives them, or none.
+        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
+        edges: Also how far every part is from the edge of the view: to_edge.
+        radii: By how much parts may be elsewhere, in metres: all alike, or each.
+        """
+
+    @property
+    def room(self) -> Hiding:
+        """Where hidden room begins and ends."""
+
+    @property
+    def half_pixel(self) -> float:
+        """For ray images: half_pixel_of their table."""
+
+    @property
+    def labels(self) -> NDArray[numpy.uint8]:
+        """Of all pixels of all clouds, as self_filter gives them, or none."""
+
+    @property
+    def places(self) -> bool:
+        """
+        Also where every part is nearest: at, nearest and normal, as the robot always has.
+        """
+
+    @property
+    def edges(self) -> bool:
+        """Also how far every part is from the edge of the view: to_edge."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """By how much parts may be elsewhere, in metres: all alike, or each."""
+
+    def __repr__(self) -> str: ...
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __eq__(self, other: object, /) -> bool: ...
+
+    def __hash__(self) -> int: ...
+
 class Query(Generic[Answer]):
     """
     A question prepared for a robot on one device: make it once and ask it in every frame. Any number of threads may call it.
     """
 
     @overload
-    def __init__(self: Query[CertainDistanceResult], robot: Robot, question: CertainDistance | type[CertainDistance], device: str = 'cpu') -> None:
-        """question: such as MinDistance(). device: "cpu", or "cuda:0" and so on."""
+    def __init__(self: Query[CertainDistanceResult], robot: Robot, question: CertainDistance | type[CertainDistance], device: str = 'cpu', threads: int | None = None) -> None:
+        """
+        question: such as MinDistance(). device: "cpu", or "cuda:0" and so on. threads: how many work on the cpu; None: all.
+        """
 
     @overload
-    def __init__(self: Query[PointDistances], robot: Robot, question: Distances | type[Distances], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[PointDistances], robot: Robot, question: Distances | type[Distances], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[PartDistances], robot: Robot, question: DistancesPerPart | type[DistancesPerPart], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[PartDistances], robot: Robot, question: DistancesPerPart | type[DistancesPerPart], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[CollisionResult], robot: Robot, question: InCollision | type[InCollision], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[CollisionResult], robot: Robot, question: InCollision | type[InCollision], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[InCollisionsResult], robot: Robot, question: InCollisions | type[InCollisions], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[InCollisionsResult], robot: Robot, question: InCollisions | type[InCollisions], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[MinDistanceResult], robot: Robot, question: MinDistance | type[MinDistance], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[MinDistanceResult], robot: Robot, question: MinDistance | type[MinDistance], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[MinDistancePerPartResult], robot: Robot, question: MinDistancePerPart | type[MinDistancePerPart], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[MinDistancePerPartResult], robot: Robot, question: MinDistancePerPart | type[MinDistancePerPart], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[SupportedDistance], robot: Robot, question: MinDistanceSupported | type[MinDistanceSupported], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[SupportedDistance], robot: Robot, question: MinDistanceSupported | type[MinDistanceSupported], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[MinDistancesResult], robot: Robot, question: MinDistances | type[MinDistances], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[MinDistancesResult], robot: Robot, question: MinDistances | type[MinDistances], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[MinDistancesPerPartResult], robot: Robot, question: MinDistancesPerPart | type[MinDistancesPerPart], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[MinDistancesPerPartResult], robot: Robot, question: MinDistancesPerPart | type[MinDistancesPerPart], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[NearestKResult], robot: Robot, question: NearestK | type[NearestK], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[NearestKResult], robot: Robot, question: NearestK | type[NearestK], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[NDArray[numpy.void]], robot: Robot, question: PartWitnesses | type[PartWitnesses], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[NDArray[numpy.void]], robot: Robot, question: PartWitnesses | type[PartWitnesses], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[SelfFilterResult], robot: Robot, question: SelfFilter | type[SelfFilter], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[SeenAndUnseenResult], robot: Robot, question: SeenAndUnseen | type[SeenAndUnseen], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[PointDistances], robot: Robot, question: SignedDistances | type[SignedDistances], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[SelfFilterResult], robot: Robot, question: SelfFilter | type[SelfFilter], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[UnseenResult], robot: Robot, question: Unseen | type[Unseen], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[PointDistances], robot: Robot, question: SignedDistances | type[SignedDistances], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[WithinResult], robot: Robot, question: Within | type[Within], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[UnseenResult], robot: Robot, question: Unseen | type[Unseen], device: str = 'cpu', threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self: Query[ZonesResult], robot: Robot, question: Zones | type[Zones], device: str = 'cpu') -> None: ...
+    def __init__(self: Query[WithinResult], robot: Robot, question: Within | type[Within], device: str = 'cpu', threads: int | None = None) -> None: ...
 
-    def __call__(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> Answer:
+    @overload
+    def __init__(self: Query[ZonesResult], robot: Robot, question: Zones | type[Zones], device: str = 'cpu', threads: int | None = None) -> None: ...
+
+    def __call__(self, points: _Array | Cloud | None = None, joints: _Array | Mapping[str, float] | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, cloud_pose: ArrayLike | None = None, depth: _Array | None = None, intrinsics: ArrayLike | None = None, rays: _Array | None = None, depth_scale: float | None = None, camera_pose: ArrayLike | None = None, clouds: Iterable[_Array | Cloud] | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> Answer:
         """
         Asks about one frame and waits for the answer. Where the robot is: joints (joints,) or {name: value}, with base (world-from-base); or poses (parts, 4, 4), world-from-part; rest: what nothing is said of is at rest, or at the base. Questions about many configurations take joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: other options for this call. Raises ValueError with a sentence that names the argument.
         """
 
-    def enqueue(self, points: object | None = None, joints: object | None = None, *, poses: object | None = None, base: object | None = None, cloud_pose: object | None = None, depth: object | None = None, intrinsics: object | None = None, rays: object | None = None, depth_scale: object | None = None, camera_pose: object | None = None, clouds: object | None = None, out: object | None = None, capacity: object | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> DeviceAnswer:
+    def worlds(self, clouds: Iterable[_Array | Cloud] | None, joints: _Array | Mapping[str, float] | None = None, splits: ArrayLike | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> MinDistancesResult | InCollisionsResult:
         """
-        Asks on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
+        Asks about many worlds, each with its own cloud, in one call: side by side on the cpu. clouds: one for each world; or one array (n, 3) of all points, of which world w has splits[w] to splits[w + 1] - 1. joints (worlds, ..., joints), poses (worlds, ..., parts, 4, 4), base (4, 4) or (worlds, 4, 4). Of MinDistance and MinDistances the answer is a MinDistancesResult of shape (worlds, ...), of InCollision and InCollisions an InCollisionsResult. Points have their numbers in their world.
+        """
+
+    def enqueue(self, points: _Array | Cloud | None = None, joints: _Array | Mapping[str, float] | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, cloud_pose: ArrayLike | None = None, depth: _Array | None = None, intrinsics: ArrayLike | None = None, rays: _Array | None = None, depth_scale: float | None = None, camera_pose: ArrayLike | None = None, clouds: Iterable[_Array | Cloud] | None = None, out: object | None = None, capacity: int | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> DeviceAnswer:
+        """
+        The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
         """
 
     @property
-    def question(self) -> object: ...
+    def question(self) -> object:
+        """With the options that a call may replace."""
 
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """The robot that is asked about."""
 
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """Where it asks: "cpu", or "cuda:0" and so on."""
+
+    @property
+    def threads(self) -> int | None:
+        """How many threads work on the cpu; None: all."""
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __repr__(self) -> str: ...
+
+def motion_clearance(query: Query, start: ArrayLike | Mapping[str, float], end: ArrayLike | Mapping[str, float], points: _Array | Cloud | None = None, *, base: ArrayLike | None = None, cloud_pose: ArrayLike | None = None, depth: _Array | None = None, intrinsics: ArrayLike | None = None, rays: _Array | None = None, depth_scale: float | None = None, camera_pose: ArrayLike | None = None, clouds: Iterable[_Array | Cloud] | None = None, stream: object | None = None, tolerance: float = 0.01, margin: float = 0.0, most_queries: int = 1000, radii: ArrayLike | None = None, ignore_limits: bool = False) -> MotionClearanceResult:
+    """
+    How near points come over a whole motion, also between the times that are asked: never more than in truth. query: of MinDistancePerPart. start, end: joints, each of which moves at constant speed; or arrays of poses (parts, 4, 4), between which parts go straight. tolerance: how far lower may be below the least at an asked time (m). margin: what state compares with (m). radii: by how much parts may be elsewhere (m). What is seen: as in a call.
+    """
 
 class DeviceArray:
     """
@@ -1709,13 +2403,16 @@ class DeviceArray:
         """Copies an array of numbers or records from the host."""
 
     @property
-    def shape(self) -> tuple[int, ...]: ...
+    def shape(self) -> tuple[int, ...]:
+        """As NumPy's."""
 
     @property
-    def dtype(self) -> Any: ...
+    def dtype(self) -> Any:
+        """As NumPy's."""
 
     @property
-    def device(self) -> str: ...
+    def device(self) -> str:
+        """Where it lies: "cuda:0" and so on."""
 
     def numpy(self) -> NDArray[Any]:
         """A copy on the host, after what is enqueued has been written."""
@@ -1740,7 +2437,8 @@ class DeviceAnswer:
 
     def __getitem__(self, name: str) -> Any: ...
 
-    def keys(self) -> list[str]: ...
+    def keys(self) -> list[str]:
+        """The names of the arrays."""
 
     def __iter__(self) -> Iterator[str]: ...
 
@@ -1755,7 +2453,17 @@ class DeviceAnswer:
 
     def __repr__(self) -> str: ...
 
-def joint_gradients(robot: Robot, joints: object | None, result: object, base: object | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+def approach_speed(result: MinDistanceResult | PartWitness, velocity: ArrayLike, turning: ArrayLike = (0.0, 0.0, 0.0), about: ArrayLike = (0.0, 0.0, 0.0), point_velocity: ArrayLike = (0.0, 0.0, 0.0)) -> float | None:
+    """
+    How fast the least distance shrinks, m/s; negative if the pair moves apart, None where it has no gradient. The result's part moves with velocity (m/s) at about and turns by turning (rad/s); point_velocity is the point's. All in world axes, such as Robot.jacobian(q, part, about) times joint speeds. Other pairs may close faster.
+    """
+
+def protective_separation(*, human_speed: float, robot_speed: float, reaction_time: float, stopping_time: float, stopping_distance: float, intrusion: float, human_uncertainty: float, robot_uncertainty: float) -> float:
+    """
+    The protective separation distance of ISO/TS 15066, which ISO 10218-2:2025 has taken over, in metres: human_speed (reaction_time + stopping_time) + robot_speed reaction_time + the other terms; m/s, s, m. Compare it with a result's lower. It is the formula and nothing more: no safety function. Raises ValueError for a number that is negative or not finite.
+    """
+
+def joint_gradients(robot: Robot, joints: _Array | Mapping[str, float] | None, result: MinDistanceResult | MinDistancesResult, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
     """
     How each least distance changes with the joints, (..., joints): metres per radian or metre, from its witness. joints and base are those that were asked; ValueError if not, or if result is of another robot. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
     """

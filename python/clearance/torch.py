@@ -44,7 +44,7 @@ class _LeastDistances(torch.autograd.Function):
             known = torch.nan_to_num(torch.from_numpy(rows)).to(upstream)
             by_joints = _FirstOnly.apply(known, *context.by) * upstream.unsqueeze(-1)
         if context.needs_input_grad[1]:
-            of, pose, points = result.of, seen.get("cloud_pose"), context.by[-1]
+            of, pose, points = result.of.reshape(-1), seen.get("cloud_pose"), context.by[-1]
             turn = np.eye(3) if pose is None else np.asarray(pose.cpu() if isinstance(pose, torch.Tensor) else pose)[:3, :3]
             moves = (of["part"] != none) & (of["cloud"] == 0) & np.isfinite(of["distance"]) & (of["distance"] != 0)
             rows = _FirstOnly.apply(torch.from_numpy(of["normal"][moves].astype("f8") @ turn), *context.by)

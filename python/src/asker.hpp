@@ -6,6 +6,7 @@
 #include <clearance/frames/bracket.hpp>
 #include <clearance/points/cropped.hpp>
 #include <clearance/points/depth_image.hpp>
+#include <clearance/points/masked.hpp>
 #include <clearance/points/ray_image.hpp>
 #include <clearance/points/strided_points.hpp>
 
@@ -87,6 +88,17 @@ std::size_t results_of(std::size_t configurations, std::size_t parts) {
 /// A prepared question. One thread at a time asks it.
 template <class Q>
 struct asker : clearance::any::query<Q, typename cloud_about<Q>::type> {
+  /// On a host: the same about clouds behind masks: the labels of each, or null. Throws std::invalid_argument
+  /// elsewhere, and of questions about images.
+  virtual typename Q::result masked(std::span<const Eigen::Isometry3d>, const clouds_about<Q>&,
+                                    std::span<const clearance::point_label* const>, const Q&) {
+    throw std::invalid_argument(
+        clearance::lists<Q, clearance::of_images>
+            ? "clearance: a cloud is masked, and this question is about images: its labels say which pixels are the "
+              "robot's own"
+            : "clearance: a cloud is masked, which a query on the cpu takes; on a device give the points that are "
+              "left");
+  }
   /// On a device: what follows waits for the work in this stream.
   virtual void after(void*) {}
   /// On a device: enqueues a frame between what is in the caller's stream now and what comes there later. Clouds and
@@ -100,6 +112,6 @@ struct asker : clearance::any::query<Q, typename cloud_about<Q>::type> {
   virtual void* stream() const { return nullptr; }
 };
 
-/// Each question's is instantiated in a file of its own, which CMake writes.
+/// Each question's is instantiated in a file of its own, which CMake writes. `threads`: how many work; 0: all.
 template <class Q>
-std::unique_ptr<asker<Q>> ask_on_host(std::shared_ptr<const robot_trees<>> trees, const Q& question);
+std::unique_ptr<asker<Q>> ask_on_host(std::shared_ptr<const robot_trees<>> trees, const Q& question, unsigned threads);

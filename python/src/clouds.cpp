@@ -317,6 +317,14 @@ cloud_object cropped_of(nb::handle cloud, nb::handle inside, nb::handle outside,
 
 namespace {
 
+/// Do values follow one another? `count`: how many there are.
+bool is_dense(const seen_array& seen, std::size_t& count) {
+  bool dense = true;
+  for (std::size_t k = seen.shape.size(); k-- > 0; count *= seen.shape[k])
+    dense &= seen.shape[k] < 2 || seen.strides[k] == std::int64_t(count * seen.item);
+  return dense;
+}
+
 /// A radius for each point, where they lie.
 point_radii radii_of(nb::handle given, cloud_doubts& doubts) {
   constexpr const char* wanted =
@@ -324,9 +332,7 @@ point_radii radii_of(nb::handle given, cloud_doubts& doubts) {
       "dtype float32";
   seen_array seen = array_seen(given, "noise", wanted);
   std::size_t count = 1;
-  bool dense = true;
-  for (std::size_t k = seen.shape.size(); k-- > 0; count *= seen.shape[k])
-    dense &= seen.shape[k] < 2 || seen.strides[k] == std::int64_t(count * sizeof(real));
+  const bool dense = is_dense(seen, count);
   if (seen.shape.empty() || seen.kind != 'f' || seen.item != sizeof(real))
     throw std::invalid_argument(std::string("clearance: noise is ") + wanted + ", not " + shape_and_type(given));
   if (!dense) throw std::invalid_argument("clearance: noise has gaps between its radii; copy it first");
@@ -344,6 +350,7 @@ cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, doub
     throw nb::type_error("uncertain: cloud is what points(...) or depth_image(...) returns");
   if (bare->doubts) throw std::invalid_argument("clearance: cloud is uncertain already");
   cloud_object made = *bare;
+  made.recipe = nb::object();
   cloud_doubts& doubts = made.doubts.emplace();
   doubts.of = {shift, turn, max_speed, age};
   any_noise& its = doubts.noise;
@@ -360,6 +367,37 @@ cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, doub
     throw std::invalid_argument("clearance: noise is " + nb::cast<std::string>(nb::repr(noise)) +
                                 ", which is 0 a metre away; None says that there is none");
   return made;
+}
+
+cloud_object masked_of(nb::handle cloud, nb::handle labels) {
+  cloud_object* bare = nullptr;
+  if (!nb::try_cast(cloud, bare) || !bare)
+    throw nb::type_error("masked: cloud is what points(...), depth_image(...) or uncertain(...) returns");
+  if (bare->labels) throw std::invalid_argument("clearance: cloud is masked already; join the labels first");
+  constexpr const char* wanted = "an array of one label a point, uint8 (PointLabel) or bool (True: hidden)";
+  const seen_array seen = array_seen(labels, "labels", wanted);
+  std::size_t count = 1;
+  const bool dense = is_dense(seen, count);
+  const std::size_t points = std::visit([](const auto& placed) { return placed.source.size(); }, bare->cloud);
+  if (seen.shape.empty() || !(seen.kind == 'u' || seen.kind == 'b') || seen.item != 1 || count != points)
+    throw std::invalid_argument(std::string("clearance: labels is ") + wanted + ", and there are " +
+                                std::to_string(points) + " points; not " + shape_and_type(labels));
+  if (seen.device != on_the_host)
+    throw std::invalid_argument("clearance: labels lie on " + device_name(seen.device) +
+                                ", and only queries on the cpu take masked clouds");
+  if (count != 0 && !dense) throw std::invalid_argument("clearance: labels has gaps between its values; copy it first");
+  static const point_label nothing{};  // an empty array may have no address
+  cloud_object made = *bare;
+  made.labels = count == 0 ? &nothing : reinterpret_cast<const point_label*>(seen.data);
+  made.also_kept = nb::make_tuple(made.also_kept ? made.also_kept : nb::none(), seen.kept, nb::borrow(labels));
+  made.recipe = nb::object();
+  return made;
+}
+
+/// The cloud that Python holds: with what made it, for pickle.
+cloud_object made_by(const char* maker, nb::tuple arguments, nb::dict named, cloud_object cloud) {
+  cloud.recipe = nb::make_tuple(maker, std::move(arguments), std::move(named));
+  return cloud;
 }
 
 /// Of (rows, columns, 2) float32 in host memory.
@@ -379,36 +417,97 @@ void bind_clouds(nb::module_& m) {
            [](const cloud_object& c) {
              return std::visit([](const auto& placed) { return placed.source.size(); }, c.cloud);
            })
-      .def_prop_ro("device", [](const cloud_object& c) { return device_name(c.device); });
+      .def_prop_ro(
+          "device", [](const cloud_object& c) { return device_name(c.device); },
+          "Where its array lies: \"cpu\", or \"cuda:0\" and so on.")
+      .def("__reduce__",
+           [](const cloud_object& c) {
+             return nb::make_tuple(nb::module_::import_("clearance._made").attr("cloud"), c.recipe);
+           })
+      .def("__repr__", [](const cloud_object& c) {
+        const auto count = std::visit([](const auto& placed) { return placed.source.size(); }, c.cloud);
+        return "<Cloud of " + std::to_string(count) + " points on " + device_name(c.device) +
+               (c.doubts ? ", uncertain" : "") + (c.labels ? ", masked>" : ">");
+      });
   m.def(
-      "points", &cloud_of_points, nb::arg("points"), nb::arg("pose").none() = nb::none(), nb::kw_only(),
-      nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity), nb::arg("sensor").none() = nb::none(),
-      nb::arg("zero_is_missing") = false,
+      "points",
+      [](nb::handle points, nb::handle pose, double nearest, double farthest, nb::handle sensor, bool zero_is_missing) {
+        nb::dict named;
+        named["nearest"] = nearest;
+        named["farthest"] = farthest;
+        named["sensor"] = sensor;
+        named["zero_is_missing"] = zero_is_missing;
+        return made_by("points", nb::make_tuple(points, pose), named,
+                       cloud_of_points(points, pose, nearest, farthest, sensor, zero_is_missing));
+      },
+      nb::arg("points"), nb::arg("pose").none() = nb::none(), nb::kw_only(), nb::arg("nearest") = 0.0,
+      nb::arg("farthest") = double(infinity), nb::arg("sensor").none() = nb::none(), nb::arg("zero_is_missing") = false,
       "A cloud of points, (n, 3) or (rows, columns, 3), float32 or float64, or structured with x, y, z; metres; read "
       "in place. pose: world-from-cloud, (4, 4). Points nearer to the sensor than nearest, or beyond farthest, do not "
       "count. zero_is_missing: a point at the sensor is none.");
   m.def(
-      "depth_image", &depth_of, nb::arg("depth"), nb::arg("intrinsics").none() = nb::none(),
-      nb::arg("pose").none() = nb::none(), nb::kw_only(), nb::arg("scale").none() = nb::none(),
-      nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity), nb::arg("minus_infinity_is_near") = true,
-      nb::arg("rays").none() = nb::none(),
+      "depth_image",
+      [](nb::handle depth, nb::handle intrinsics, nb::handle pose, nb::handle scale, double nearest, double farthest,
+         bool minus_infinity_is_near, nb::handle rays) {
+        nb::dict named;
+        named["scale"] = scale;
+        named["nearest"] = nearest;
+        named["farthest"] = farthest;
+        named["minus_infinity_is_near"] = minus_infinity_is_near;
+        named["rays"] = rays;
+        return made_by("depth_image", nb::make_tuple(depth, intrinsics, pose), named,
+                       depth_of(depth, intrinsics, pose, scale, nearest, farthest, minus_infinity_is_near, rays));
+      },
+      nb::arg("depth"), nb::arg("intrinsics").none() = nb::none(), nb::arg("pose").none() = nb::none(), nb::kw_only(),
+      nb::arg("scale").none() = nb::none(), nb::arg("nearest") = 0.0, nb::arg("farthest") = double(infinity),
+      nb::arg("minus_infinity_is_near") = true, nb::arg("rays").none() = nb::none(),
       "A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or "
       "float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): "
       "x / z and y / z of each pixel. pose: world-from-camera, z forward.");
   m.def(
-      "cropped", &cropped_of, nb::arg("cloud"), nb::kw_only(), nb::arg("inside").none() = nb::none(),
-      nb::arg("outside").none() = nb::none(), nb::arg("pose").none() = nb::none(),
-      nb::arg("height").none() = nb::none(), nb::arg("plane").none() = nb::none(),
+      "cropped",
+      [](nb::handle cloud, nb::handle inside, nb::handle outside, nb::handle pose, nb::handle height,
+         nb::handle plane) {
+        nb::dict named;
+        named["inside"] = inside;
+        named["outside"] = outside;
+        named["pose"] = pose;
+        named["height"] = height;
+        named["plane"] = plane;
+        return made_by("cropped", nb::make_tuple(cloud), named,
+                       cropped_of(cloud, inside, outside, pose, height, plane));
+      },
+      nb::arg("cloud"), nb::kw_only(), nb::arg("inside").none() = nb::none(), nb::arg("outside").none() = nb::none(),
+      nb::arg("pose").none() = nb::none(), nb::arg("height").none() = nb::none(), nb::arg("plane").none() = nb::none(),
       "The same cloud without points that are no obstacles by their place in the world, which are counted as cropped. "
       "Obstacles are inside a box (2, 3), lower and upper corner, and outside another (pose: world-from-box, of both); "
       "at a height (low, high); and farther than thickness from plane, (a, b, c, d, thickness), of ax + by + cz = d. "
       "Metres. A cloud may be cropped again, by four of these in all.");
   m.def(
-      "uncertain", &uncertain_of, nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(),
-      nb::arg("shift") = 0.0, nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,
+      "uncertain",
+      [](nb::handle cloud, nb::handle noise, double shift, double turn, double max_speed, double age) {
+        nb::dict named;
+        named["shift"] = shift;
+        named["turn"] = turn;
+        named["max_speed"] = max_speed;
+        named["age"] = age;
+        return made_by("uncertain", nb::make_tuple(cloud, noise), named,
+                       uncertain_of(cloud, noise, shift, turn, max_speed, age));
+      },
+      nb::arg("cloud"), nb::arg("noise").none() = nb::none(), nb::kw_only(), nb::arg("shift") = 0.0,
+      nb::arg("turn") = 0.0, nb::arg("max_speed") = 0.0, nb::arg("age") = 0.0,
       "The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), "
       "StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the "
       "query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).");
+  m.def(
+      "masked",
+      [](nb::handle cloud, nb::handle labels) {
+        return made_by("masked", nb::make_tuple(cloud, labels), nb::dict(), masked_of(cloud, labels));
+      },
+      nb::arg("cloud"), nb::arg("labels"),
+      "The same cloud without some of its points, which are dropped as masked; the others keep their numbers. labels: "
+      "one a point, read in place: uint8 as SelfFilter's labels (PointLabel.own is hidden), or bool (True is hidden). "
+      "For queries on the cpu; Unseen has labels of its own.");
   m.def("half_pixel_of", &half_pixel, nb::arg("rays"),
         "Half the diagonal of the widest pixel at z = 1, of a table of rays (rows, columns, 2), float32: for Unseen.");
 }

@@ -30,6 +30,8 @@ struct cloud_object {
   bool far = false;          ///< Doubles, of which a place near the robot is subtracted before they become floats.
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();  ///< Of their filter, before it became floats.
   nb::object kept, also_kept;
+  const clearance::point_label* labels = nullptr;  ///< One a point: those labelled `own` are hidden. In host memory.
+  nb::object recipe = {};  ///< (maker, arguments, named ones), for pickle; of a cloud that Python holds.
 };
 
 /// For a robot at this place, cropped: doubles far from (0, 0, 0) become floats relative to a place near it.
@@ -46,5 +48,8 @@ cloud_object cropped_of(nb::handle cloud, nb::handle inside, nb::handle outside,
 
 /// The same cloud, whose points may be elsewhere. `noise`: None, one of the library's, or an array of radii.
 cloud_object uncertain_of(nb::handle cloud, nb::handle noise, double shift, double turn, double max_speed, double age);
+
+/// The same cloud without the points that are labelled `own`, or of which a bool is true.
+cloud_object masked_of(nb::handle cloud, nb::handle labels);
 
 void bind_clouds(nb::module_& m);

@@ -5,8 +5,13 @@
 #include "questions.hpp"
 #include "robot.hpp"
 #include "sensor_messages.hpp"
+#include "separation.hpp"
 
 #include <clearance/ground/numbered.hpp>
+
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
 
 template <class E>
 void bind_enum(nb::module_& m) {
@@ -37,6 +42,32 @@ NB_MODULE(_core, m) {
           "the answer keeps each part's gap and tolerance, only that part's are taken off, and IndexError is raised "
           "for "
           "a part that is not there.")
+      .def(
+          "to_dict",
+          [](const clearance::distance_certainty& c) {
+            nb::dict all;
+            all["error"] = c.error.here;
+            all["error_per_metre"] = c.error.per_metre;
+            all["slop"] = c.slop;
+            all["slops"] = nb::cast(std::vector<double>(c.slops.begin(), c.slops.end()));
+            return all;
+          },
+          nb::sig("def to_dict(self) -> dict[str, typing.Any]"),
+          "Of what it is made: errors of computing, and by how much parts may be nearer than their primitives, metres.")
+      .def("__getstate__",
+           [](const clearance::distance_certainty& c) {
+             return nb::make_tuple(c.error.here, c.error.per_metre, c.slop,
+                                   nb::cast(std::vector<double>(c.slops.begin(), c.slops.end())));
+           })
+      .def("__setstate__",
+           [](clearance::distance_certainty& self, const nb::tuple& state) {
+             new (&self) clearance::distance_certainty{
+                 .error = {nb::cast<double>(state[0]), nb::cast<double>(state[1])}, .slop = nb::cast<double>(state[2])};
+             const auto slops = nb::cast<std::vector<double>>(state[3]);
+             if (slops.empty()) return;
+             self.slops.resize(slops.size());
+             std::ranges::copy(slops, self.slops.data());
+           })
       .def("__repr__", [](const clearance::distance_certainty& c) {
         return "DistanceCertainty(1 m is certainly at least " + std::to_string(c.lower(1)) + " m)";
       });
@@ -52,5 +83,6 @@ NB_MODULE(_core, m) {
       bind_result<T>(m);
   });
   bind_query(m);
+  bind_separation(m);
   bind_gradients(m);
 }

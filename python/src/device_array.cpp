@@ -207,10 +207,12 @@ void bind_device_array(nb::module_& m) {
            nb::sig("def __init__(self, array: numpy.typing.ArrayLike, device: str = 'cuda:0') -> None"))
       .def_prop_ro(
           "shape", [](const device_array& a) { return tuple_of(a.shape); },
-          nb::sig("def shape(self) -> tuple[int, ...]"))
+          nb::sig("def shape(self) -> tuple[int, ...]"), "As NumPy's.")
       .def_prop_ro(
-          "dtype", [](const device_array& a) { return a.dtype; }, nb::sig("def dtype(self) -> typing.Any"))
-      .def_prop_ro("device", [](const device_array& a) { return device_name(a.device); })
+          "dtype", [](const device_array& a) { return a.dtype; }, nb::sig("def dtype(self) -> typing.Any"),
+          "As NumPy's.")
+      .def_prop_ro(
+          "device", [](const device_array& a) { return device_name(a.device); }, "Where it lies: \"cuda:0\" and so on.")
       .def("numpy", &on_host, "A copy on the host, after what is enqueued has been written.",
            nb::sig("def numpy(self) -> numpy.typing.NDArray[typing.Any]"))
       .def("__getitem__", &field_of, nb::arg("field"), nb::sig("def __getitem__(self, field: str) -> DeviceArray"))

@@ -143,7 +143,7 @@ inline void bind_enqueued(nb::module_& m) {
           nb::arg("name"), nb::sig("def __getitem__(self, name: str) -> typing.Any"))
       .def(
           "keys", [](const enqueued_answer& a) { return nb::list(a.arrays.attr("keys")()); },
-          nb::sig("def keys(self) -> list[str]"))
+          nb::sig("def keys(self) -> list[str]"), "The names of the arrays.")
       .def(
           "__iter__", [](const enqueued_answer& a) { return nb::iter(a.arrays); },
           nb::sig("def __iter__(self) -> collections.abc.Iterator[str]"))

@@ -2,19 +2,19 @@
 #include "query.hpp"
 
 #include "arrays.hpp"
-#include "clouds.hpp"
-#include "enqueued.hpp"
-#include "questions.hpp"
-#include "robot.hpp"
+#include "prepared_query.hpp"
+
+#include <clearance/io/joint_motion.hpp>
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
-#include <mutex>
-#include <optional>
+#include <algorithm>
 
 using namespace clearance;
+using namespace clearance::python;
 
 void refuse_option(const char* question, const char* option, const char* wanted, nb::handle given) {
   const nb::object one_line = nb::str(" ").attr("join")(nb::repr(given).attr("split")());  // arrays have several
@@ -24,188 +24,36 @@ void refuse_option(const char* question, const char* option, const char* wanted,
 
 namespace {
 
-/// A cloud as it is asked about: relative to a place near the robot.
-struct seen_cloud {
-  any_cloud cloud;
-  const std::optional<cloud_doubts> doubts;
-};
-
-/// The names of the questions about uncertain clouds.
-std::string takers_of_uncertain() {
-  std::vector<std::string> names;
-  for_each_declared([&]<class T>() {
-    if constexpr (declared<T>::question)
-      if (!std::is_same_v<typename cloud_about<T>::type, any_cloud>) names.emplace_back(declared<T>::name);
-  });
-  std::string text;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
-  return text;
+/// How many threads a host may use. Throws std::invalid_argument.
+unsigned threads_of(nb::handle given, int device) {
+  if (given.is_none()) return 0;
+  const std::size_t threads = count_of(given, "threads");
+  if (device != on_the_host)
+    throw std::invalid_argument("clearance: threads are of the cpu, and this query asks on " + device_name(device));
+  if (threads == 0 || threads > 4096)
+    throw std::invalid_argument("clearance: threads is " + std::to_string(threads) +
+                                "; it is from 1 to 4096, or None for all");
+  return unsigned(threads);
 }
-
-/// Throws std::invalid_argument if a cloud is uncertain, and Q is not about that.
-template <class Q>
-clouds_about<Q> clouds_for(const std::vector<seen_cloud>& seen) {
-  clouds_about<Q> made;
-  for (const seen_cloud& each : seen)
-    std::visit(
-        [&]<class S>(const placed<S>& bare) {
-          if (!each.doubts)
-            made.push_back(bare);
-          else if constexpr (std::is_constructible_v<typename cloud_about<Q>::type, any::placed_uncertain<S>>)
-            made.push_back(placed{uncertain(bare.source, each.doubts->noise, each.doubts->of), bare.pose});
-          else
-            throw std::invalid_argument(std::string("clearance: a cloud is uncertain, and in Python ") +
-                                        declared<Q>::name + " takes points where they were measured; " +
-                                        takers_of_uncertain() + " take uncertain ones");
-        },
-        each.cloud);
-  return made;
-}
-
-/// Is Q about many configurations?
-template <class Q>
-inline constexpr bool asks_many = requires { typename Q::searched; };
-
-/// A query in Python, whatever its question.
-struct any_query {
-  virtual ~any_query() = default;
-  virtual bool about_many() const = 0;  ///< Configurations.
-  virtual nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
-                         nb::handle question, std::optional<void*> stream) = 0;
-  virtual nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
-                             nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
-                             nb::object kept) = 0;
-};
-
-/// Any number of threads may ask: each takes a prepared question that no other has, or a new one.
-template <class Q>
-class query_of final : public any_query {
- public:
-  query_of(std::shared_ptr<robot_model> robot, const Q& question, int device)
-      : robot_(std::move(robot)), standing_(question), device_(device) {
-    check_options();
-    idle_.push_back(make());
-  }
-
-  bool about_many() const override { return asks_many<Q>; }
-
-  nb::object ask(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds, nb::handle question,
-                 std::optional<void*> stream) override {
-    const Q asked = question.is_none() ? standing_ : other(question);
-    const clouds_about<Q> seen = clouds_for<Q>(clouds);
-    typename Q::result result;
-    {
-      const nb::gil_scoped_release others;
-      const auto mine = take();
-      if (stream) mine->after(*stream);
-      result = (*mine)(poses, seen, asked);
-      give_back(mine);
-    }
-    if constexpr (declared_struct<typename Q::result>) {
-      return nb::cast(answered<typename Q::result>{std::move(result), {robot_->names, digest_of(poses)}});
-    } else {
-      using element = typename Q::result::value_type;
-      auto* const kept = new typename Q::result(std::move(result));
-      return array_of<element>(kept->data(), kept->size(),
-                               nb::capsule(kept, [](void* p) noexcept { delete static_cast<typename Q::result*>(p); }));
-    }
-  }
-
-  nb::object enqueue(std::span<const Eigen::Isometry3d> poses, const std::vector<seen_cloud>& clouds,
-                     nb::handle question, void* stream, nb::handle out, std::optional<std::size_t> capacity,
-                     nb::object kept) override {
-    if constexpr (can_be_enqueued<Q>) {
-      const Q asked = question.is_none() ? standing_ : other(question);
-      const std::size_t parts = robot_->parts();
-      const clouds_about<Q> seen = clouds_for<Q>(clouds);
-      const room_sizes sizes{count_points(seen), parts, parts == 0 ? 0 : poses.size() / parts, {}};
-      const auto mine = [this] {
-        const nb::gil_scoped_release others;
-        return take();
-      }();
-      enqueued_answer answer{{}, {}, device_, mine->stream(), mine, std::move(kept), {}};
-      const auto to = arrays_for(asked, sizes, capacity, out, *mine, answer);
-      {
-        const nb::gil_scoped_release others;
-        answer.certain = mine->enqueue(poses, seen, asked, to, stream);
-      }
-      for (const auto& memory : answer.rewritten) memory->stream = answer.stream, memory->writer = mine;
-      give_back(mine);
-      return nb::cast(std::move(answer));
-    } else {
-      throw std::invalid_argument(std::string("clearance: ") + declared<Q>::name +
-                                  " cannot be enqueued, because the host decides while it is answered; call the query");
-    }
-  }
-
- private:
-  static Q other(nb::handle question) {
-    if (!nb::isinstance<asked<Q>>(question))
-      throw nb::type_error((std::string("this query asks ") + declared<Q>::name + ", and question is a " +
-                            nb::cast<std::string>(question.type().attr("__name__")))
-                               .c_str());
-    return nb::cast<const asked<Q>&>(question).question;
-  }
-  /// Throws what asking would throw about options that no frame could mend: it asks about a frame without points.
-  void check_options() const {
-    if constexpr (!any::is_about<Q, sphere_model<>>())
-      if (robot_->spheres)
-        throw std::invalid_argument(std::string("clearance: ") + declared<Q>::name +
-                                    " is about robots of triangles (model=\"triangles\"), and this one has spheres");
-    Q q = standing_;
-    if constexpr (requires { q.labels; }) q.labels = {};  // of a frame's points
-    if constexpr (!requires { q.minima; })                // of a frame's pairs
-      (*ask_on_host(robot_->trees, q))(std::vector(robot_->parts(), Eigen::Isometry3d::Identity()), {}, q);
-  }
-  std::shared_ptr<asker<Q>> make() const {
-    if (device_ == on_the_host) return ask_on_host(robot_->trees, standing_);
-    return ask_on_device(*robot_, standing_, device_);
-  }
-  std::shared_ptr<asker<Q>> take() {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!idle_.empty()) {
-        auto one = std::move(idle_.back());
-        idle_.pop_back();
-        return one;
-      }
-    }
-    return make();
-  }
-  void give_back(std::shared_ptr<asker<Q>> one) {
-    const std::scoped_lock lock(mutex_);
-    idle_.push_back(std::move(one));
-  }
-
-  std::shared_ptr<robot_model> robot_;
-  Q standing_;
-  int device_;
-  std::mutex mutex_;
-  std::vector<std::shared_ptr<asker<Q>>> idle_;
-};
-
-/// What is asked about: where the robot is, and what is seen.
-struct asked_frame {
-  std::vector<Eigen::Isometry3d> places;
-  std::vector<seen_cloud> seen;
-  nb::list kept;
-  bool on_device = false;
-};
 
 struct query_object {
   std::shared_ptr<robot_model> robot;
   nb::object question, kept;
   int device;
+  unsigned threads;  ///< 0: all.
   std::unique_ptr<any_query> query;
 
-  query_object(std::shared_ptr<robot_model> robot_, nb::object question_, const std::string& device_)
-      : robot(std::move(robot_)), question(std::move(question_)), device(device_number(device_)) {
+  query_object(std::shared_ptr<robot_model> robot_, nb::object question_, const std::string& device_,
+               nb::handle threads_)
+      : robot(std::move(robot_)),
+        question(std::move(question_)),
+        device(device_number(device_)),
+        threads(threads_of(threads_, device)) {
     if (PyType_Check(question.ptr())) question = question();  // MinDistance for MinDistance()
     for_each_declared([&]<class T>() {
       if constexpr (declared<T>::question)
         if (nb::isinstance<asked<T>>(question))
-          query = std::make_unique<query_of<T>>(robot, nb::cast<const asked<T>&>(question).question, device);
+          query = std::make_unique<query_of<T>>(robot, nb::cast<const asked<T>&>(question).question, device, threads);
     });
     if (!query)
       throw nb::type_error(
@@ -223,12 +71,17 @@ struct query_object {
     if (!poses.is_none()) {
       if (!joints.is_none() || !base.is_none() || how.rest)
         throw std::invalid_argument("clearance: poses are given, so joints, base and rest cannot be");
-      places = poses_of(poses, "poses");
+      places = poses_of(poses, "poses", &made.shape);
+      if (!made.shape.empty() && made.shape.back() == robot->parts())
+        made.shape.pop_back();
+      else
+        made.shape.clear();
       middle = places.empty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(places[0].translation());
     } else {
       middle = pose_of(base, "base").translation();
       auto [at, shape] = robot_at(*robot, joints, base, how);
       places = std::move(at);
+      made.shape = std::move(shape);
       const std::size_t count = robot->parts() == 0 ? 1 : places.size() / robot->parts();
       if (count != 1 && !query->about_many())
         throw std::invalid_argument("clearance: joints gives " + std::to_string(count) + " configurations, so " +
@@ -257,7 +110,7 @@ struct query_object {
                                     device_name(cloud.doubts->device) + ", and this query asks on " +
                                     device_name(device) + ", which reads them in place");
       made.on_device |= cloud.device != on_the_host || (radii && device != on_the_host);
-      made.seen.push_back({near_robot(cloud, middle), cloud.doubts});
+      made.seen.push_back({near_robot(cloud, middle), cloud.doubts, cloud.labels});
       for (const nb::object& memory : {cloud.kept, cloud.also_kept})
         if (memory) made.kept.append(memory);
     };
@@ -300,7 +153,94 @@ struct query_object {
                         bool ignore_limits, bool rest) {
     const asked_frame frame = frame_of(points, joints, poses, base, cloud_pose, depth, intrinsics, rays, depth_scale,
                                        camera_pose, clouds, {ignore_limits, rest}, false);
-    return query->ask(frame.places, frame.seen, other, stream_of(stream, frame.on_device));
+    return query->ask(frame, other, stream_of(stream, frame.on_device));
+  }
+
+  nb::object worlds(nb::handle clouds, nb::handle joints, nb::handle splits, nb::handle poses, nb::handle base,
+                    nb::handle stream, nb::handle other, bool ignore_limits, bool rest) {
+    nb::list each;
+    if (splits.is_none()) {
+      if (nb::hasattr(clouds, "dtype") || !nb::hasattr(clouds, "__iter__"))
+        throw std::invalid_argument(
+            "clearance: clouds is a sequence, one for each world; or one array of all points, and splits says where "
+            "each world's begin");
+      for (const nb::handle one : clouds) each.append(one);
+    } else {
+      std::vector<std::size_t> rows;
+      if (!nb::try_cast(nb::module_::import_("numpy").attr("asarray")(splits).attr("tolist")(), rows) || rows.empty() ||
+          rows.front() != 0 || rows.back() != nb::len(clouds) || !std::ranges::is_sorted(rows))
+        throw std::invalid_argument(
+            "clearance: splits is (worlds + 1) row numbers that begin with 0, never fall, and end with the number of "
+            "points");
+      for (std::size_t w = 0; w + 1 < rows.size(); ++w)
+        each.append(clouds[nb::slice(nb::int_(rows[w]), nb::int_(rows[w + 1]), nb::none())]);
+    }
+    const std::size_t count = nb::len(each);
+    const auto its = [&](nb::handle given, const char* name, int shared) {
+      const bool all = given.is_none() || nb::isinstance<nb::dict>(given) ||
+                       (shared != 0 && nb::cast<int>(nb::module_::import_("numpy").attr("ndim")(given)) == shared);
+      if (!all && nb::len(given) != count)
+        throw std::invalid_argument("clearance: there are " + std::to_string(count) + " worlds, and " + name +
+                                    " is for " + std::to_string(nb::len(given)));
+      return [=](std::size_t w) { return all ? nb::borrow(given) : nb::object(given[nb::int_(w)]); };
+    };
+    const auto joints_in = its(joints, "joints", 0), poses_in = its(poses, "poses", 0), base_in = its(base, "base", 2);
+    const nb::object no = nb::none();
+    std::vector<asked_frame> frames;
+    bool on_device = false;
+    for (std::size_t w = 0; w < count; ++w) {
+      nb::list seen;
+      seen.append(each[w]);
+      frames.push_back(frame_of(no, joints_in(w), poses_in(w), base_in(w), no, no, no, no, no, no, seen,
+                                {ignore_limits, rest}, false));
+      on_device |= frames.back().on_device;
+    }
+    return query->worlds(frames, other, stream_of(stream, on_device));
+  }
+
+  nb::object over_motion(nb::handle start, nb::handle end, nb::handle points, nb::handle base, nb::handle cloud_pose,
+                         nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+                         nb::handle camera_pose, nb::handle clouds, nb::handle stream, double tolerance, double margin,
+                         nb::handle most_queries, nb::handle radii, bool ignore_limits) {
+    auto* const its = dynamic_cast<query_of<min_distance_per_part>*>(query.get());
+    if (!its)
+      throw std::invalid_argument("clearance: a motion is asked by a query of MinDistancePerPart, and this one asks " +
+                                  text_of(question.type().attr("__name__")));
+    motion_clearance_options options{
+        .tolerance = tolerance, .margin = margin, .most_queries = count_of(most_queries, "most_queries")};
+    if (double one = 0; nb::try_cast(radii, one))
+      options.radii = {one};
+    else if (!radii.is_none() &&
+             !nb::try_cast(nb::module_::import_("numpy").attr("asarray")(radii).attr("tolist")(), options.radii))
+      throw std::invalid_argument("clearance: radii is a number of metres, or one for each part, not " +
+                                  shape_and_type(radii));
+    const bool by_poses = nb::hasattr(start, "ndim") && nb::cast<int>(start.attr("ndim")) == 3;
+    const auto frame = [&](nb::handle joints, nb::handle poses) {
+      return frame_of(points, joints, poses, by_poses ? nb::none() : nb::borrow(base), cloud_pose, depth, intrinsics,
+                      rays, depth_scale, camera_pose, clouds, {ignore_limits, false}, false);
+    };
+    if (by_poses) {
+      if (!base.is_none()) throw std::invalid_argument("clearance: poses are given, so base cannot be");
+      const asked_frame from = frame(nb::none(), start);
+      const straight_motion motion(from.places, poses_of(end, "end"));
+      return answer(its->over(motion, from, options, stream_of(stream, from.on_device)));
+    }
+    const joint_reading how{ignore_limits, false};
+    const joint_rows first = joints_given(*robot, start, how), last = joints_given(*robot, end, how);
+    if (!first.shape.empty() || !last.shape.empty())
+      throw std::invalid_argument("clearance: start and end are one configuration each");
+    if (first.tree != last.tree && first.tree->size() != last.tree->size())
+      throw std::invalid_argument("clearance: start and end name different joints that follow others");
+    std::vector<std::size_t> links;
+    for (const io::robot_part& part : robot->described().parts()) links.push_back(part.link);
+    const io::joint_motion motion(*first.tree, std::move(links), first.values, last.values, {ignore_limits},
+                                  pose_of(base, "base"));
+    const asked_frame from = frame(start, nb::none());
+    return answer(its->over(motion, from, options, stream_of(stream, from.on_device)));
+  }
+
+  nb::object answer(motion_clearance_result result) const {
+    return nb::cast(answered<motion_clearance_result>{std::move(result), {robot->names, {}}});
   }
 
   nb::object enqueue(nb::handle points, nb::handle joints, nb::handle poses, nb::handle base, nb::handle cloud_pose,
@@ -339,9 +279,10 @@ void bind_query(nb::module_& m) {
                            "A question prepared for a robot on one device: make it once and ask it in every frame. Any "
                            "number of threads may "
                            "call it.")
-      .def(nb::init<std::shared_ptr<robot_model>, nb::object, const std::string&>(), nb::arg("robot"),
-           nb::arg("question").none(), nb::arg("device") = "cpu",
-           "question: such as MinDistance(). device: \"cpu\", or \"cuda:0\" and so on.")
+      .def(nb::init<std::shared_ptr<robot_model>, nb::object, const std::string&, nb::handle>(), nb::arg("robot"),
+           nb::arg("question").none(), nb::arg("device") = "cpu", nb::arg("threads").none() = nb::none(),
+           "question: such as MinDistance(). device: \"cpu\", or \"cuda:0\" and so on. threads: how many work on the "
+           "cpu; None: all.")
       .def("__call__", &query_object::operator(), nb::arg("points").none() = nb::none(),
            nb::arg("joints").none() = nb::none(), nb::kw_only(), nb::arg("poses").none() = nb::none(),
            nb::arg("base").none() = nb::none(), nb::arg("cloud_pose").none() = nb::none(),
@@ -357,6 +298,16 @@ void bind_query(nb::module_& m) {
            "joints (..., joints) or poses (..., parts, 4, 4). What is seen: points with cloud_pose; depth with "
            "intrinsics or rays and camera_pose; or clouds, a sequence of points(...) and depth_image(...). question: "
            "other options for this call. Raises ValueError with a sentence that names the argument.")
+      .def(
+          "worlds", &query_object::worlds, nb::arg("clouds"), nb::arg("joints").none() = nb::none(),
+          nb::arg("splits").none() = nb::none(), nb::kw_only(), nb::arg("poses").none() = nb::none(),
+          nb::arg("base").none() = nb::none(), nb::arg("stream").none() = nb::none(),
+          nb::arg("question").none() = nb::none(), nb::arg("ignore_limits") = false, nb::arg("rest") = false,
+          "Asks about many worlds, each with its own cloud, in one call: side by side on the cpu. clouds: one for each "
+          "world; or one array (n, 3) of all points, of which world w has splits[w] to splits[w + 1] - 1. joints "
+          "(worlds, ..., joints), poses (worlds, ..., parts, 4, 4), base (4, 4) or (worlds, 4, 4). Of MinDistance and "
+          "MinDistances the answer is a MinDistancesResult of shape (worlds, ...), of InCollision and InCollisions an "
+          "InCollisionsResult. Points have their numbers in their world.")
       .def("enqueue", &query_object::enqueue, nb::arg("points").none() = nb::none(),
            nb::arg("joints").none() = nb::none(), nb::kw_only(), nb::arg("poses").none() = nb::none(),
            nb::arg("base").none() = nb::none(), nb::arg("cloud_pose").none() = nb::none(),
@@ -371,9 +322,50 @@ void bind_query(nb::module_& m) {
            "None: "
            "the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises "
            "ValueError as a call.")
-      .def_prop_ro("question", [](const query_object& q) { return q.question; })
-      .def_prop_ro("robot", [](const query_object& q) { return q.robot; })
-      .def_prop_ro("device", [](const query_object& q) { return device_name(q.device); });
+      .def_prop_ro(
+          "question", [](const query_object& q) { return q.question; }, "With the options that a call may replace.")
+      .def_prop_ro(
+          "robot", [](const query_object& q) { return q.robot; }, "The robot that is asked about.")
+      .def_prop_ro(
+          "device", [](const query_object& q) { return device_name(q.device); },
+          "Where it asks: \"cpu\", or \"cuda:0\" and so on.")
+      .def_prop_ro(
+          "threads",
+          [](const query_object& q) { return q.threads == 0 ? nb::none() : nb::object(nb::int_(q.threads)); },
+          nb::sig("def threads(self) -> int | None"), "How many threads work on the cpu; None: all.")
+      .def("__reduce__",
+           [](nb::handle self) {
+             const auto& q = nb::cast<const query_object&>(self);
+             return nb::make_tuple(self.type(),
+                                   nb::make_tuple(q.robot, q.question, device_name(q.device), self.attr("threads")));
+           })
+      .def("__repr__", [](const query_object& q) {
+        return "<Query of " + nb::cast<std::string>(nb::repr(q.question)) + " on " + device_name(q.device) + ">";
+      });
+  m.def(
+      "motion_clearance",
+      [](query_object& query, nb::handle start, nb::handle end, nb::handle points, nb::handle base,
+         nb::handle cloud_pose, nb::handle depth, nb::handle intrinsics, nb::handle rays, nb::handle depth_scale,
+         nb::handle camera_pose, nb::handle clouds, nb::handle stream, double tolerance, double margin,
+         nb::handle most_queries, nb::handle radii, bool ignore_limits) {
+        return query.over_motion(start, end, points, base, cloud_pose, depth, intrinsics, rays, depth_scale,
+                                 camera_pose, clouds, stream, tolerance, margin, most_queries, radii, ignore_limits);
+      },
+      nb::arg("query"), nb::arg("start").none(), nb::arg("end").none(), nb::arg("points").none() = nb::none(),
+      nb::kw_only(), nb::arg("base").none() = nb::none(), nb::arg("cloud_pose").none() = nb::none(),
+      nb::arg("depth").none() = nb::none(), nb::arg("intrinsics").none() = nb::none(),
+      nb::arg("rays").none() = nb::none(), nb::arg("depth_scale").none() = nb::none(),
+      nb::arg("camera_pose").none() = nb::none(), nb::arg("clouds").none() = nb::none(),
+      nb::arg("stream").none() = nb::none(), nb::arg("tolerance") = motion_clearance_options{}.tolerance,
+      nb::arg("margin") = motion_clearance_options{}.margin,
+      nb::arg("most_queries").none() = motion_clearance_options{}.most_queries, nb::arg("radii").none() = nb::none(),
+      nb::arg("ignore_limits") = false,
+      "How near points come over a whole motion, also between the times that are asked: never more than in truth. "
+      "query: "
+      "of MinDistancePerPart. start, end: joints, each of which moves at constant speed; or arrays of poses (parts, 4, "
+      "4), between which parts go straight. tolerance: how far lower may be below the least at an asked time (m). "
+      "margin: what state compares with (m). radii: by how much parts may be elsewhere (m). What is seen: as in a "
+      "call.");
   bind_device_array(m);
   bind_enqueued(m);
 }

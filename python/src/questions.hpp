@@ -86,7 +86,7 @@ template <class Q>
 std::string signature_of() {
   const nb::object standing = nb::cast(asked<Q>{});
   std::string text = "def __init__(self";
-  for_each_member<Q>([&]<class T>(const member_as<Q, T>& m) {
+  for_each_member<Q>([&]<class Owner, class T>(const member_as<Owner, T>& m) {
     text += std::string(", ") + m.name + ": ";
     if constexpr (is_array<T> && !std::is_same_v<T, std::vector<double>>) {
       constexpr bool owned = !std::is_trivially_copyable_v<T>;  // and may be left out

@@ -27,9 +27,9 @@
 
 using namespace clearance;
 
-namespace {
-
 using row_major = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+namespace {
 
 struct model_options {
   bool spheres = true;
@@ -53,23 +53,9 @@ model_options options_of(const std::string& model, nb::handle spheres, bool cach
 nb::object copy_of(nb::handle given) { return nb::module_::import_("copy").attr("deepcopy")(given); }
 
 const io::body& body_of(const robot_model& robot, given_for<std::size_t> part) {
-  const std::size_t k = argument_of(part, "part");
+  const std::size_t k = argument_of(part, "part", robot.names);
   check_number("part", k, robot.parts());
   return robot.bodies[k];
-}
-
-/// Builds trees of bodies, without the interpreter.
-void build(robot_model& made) {
-  const auto options = [&](std::size_t k) { return part_options{.tolerance = made.bodies[k].tolerance}; };
-  if (made.spheres)
-    made.trees = std::make_shared<const robot_trees<>>(
-        make_model<sphere>(made.bodies | std::views::transform(&io::body::packed), options));
-  else
-    made.trees = std::make_shared<const robot_trees<>>(
-        make_model<obb>(made.bodies | std::views::transform(&io::body::closed), options));
-  std::vector<std::string> names;
-  for (const io::body& body : made.bodies) names.push_back(body.name);
-  made.names = std::make_shared<const std::vector<std::string>>(std::move(names));
 }
 
 /// Tells Python's logger "clearance" what is being done, once a second from the first second on. From any thread, one
@@ -79,7 +65,11 @@ class slow_work {
   void operator()(const std::string& what) {
     const auto now = std::chrono::steady_clock::now();
     if (now < due_) return;
+    say(what);
     due_ = now + std::chrono::seconds(1);
+  }
+  /// At once, before what takes seconds.
+  static void say(const std::string& what) {
     const nb::gil_scoped_acquire alone;
     try {
       nb::module_::import_("logging").attr("getLogger")("clearance").attr("info")("%s", what);
@@ -102,6 +92,12 @@ void make(robot_model& made, const std::vector<io::body_source>& sources, const 
   made.bodies = io::make_bodies(sources, how, account);
   made.notes.insert(made.notes.end(), account.notes.begin(), account.notes.end());
   build(made);
+}
+
+/// A description itself, and no file's name?
+bool is_text(const std::string& urdf) {
+  const std::size_t first = urdf.find_first_not_of(" \t\r\n");
+  return first != urdf.npos && urdf[first] == '<';
 }
 
 /// "y" or "z"; none for None.
@@ -128,7 +124,8 @@ std::shared_ptr<robot_model> from_urdf(nb::handle urdf, const std::string& model
     const nb::gil_scoped_release others;
     reading.geometry = geometry == "visual" ? io::robot_geometry::visual : io::robot_geometry::collision;
     reading.exclude_links = exclude_links;
-    made->description.emplace(io::load_robot(file, reading));
+    made->description.emplace(is_text(file) ? io::load_robot_text(file, "robot_description", reading)
+                                            : io::load_robot(file, reading));
     made->name = made->description->name(), made->notes = made->description->notes();
     std::vector<io::body_source> sources;
     for (const io::robot_part& part : made->description->parts())
@@ -278,13 +275,15 @@ std::shared_ptr<const robot_trees<>> celled_trees(const robot_trees<>& trees, co
 /// says why it has none there is a note, which ends with `so`.
 template <class Make>
 std::shared_ptr<robot_model> mapped_robot(const robot_model& robot, const char* maker, nb::object recipe,
-                                          const Make& make, const char* so) {
+                                          const Make& make, const std::string& doing, const char* so) {
   const auto made = std::make_shared<robot_model>();
   made->maker = maker, made->recipe = std::move(recipe);
   const nb::gil_scoped_release others;
   made->name = robot.name, made->names = robot.names, made->bodies = robot.bodies, made->notes = robot.notes;
   made->description = robot.description, made->spheres = robot.spheres;
+  made->held = robot.held;
   std::vector<std::string> without;
+  slow_work::say(doing + " of " + std::to_string(robot.parts()) + " parts");
   made->trees = make(without);
   for (std::size_t k = 0; k < without.size(); ++k)
     if (!without[k].empty())
@@ -301,7 +300,8 @@ std::shared_ptr<robot_model> fielded_robot(const nb::object& self, nb::handle by
   const io::field_cache kept(cache ? io::packing_cache::usual_folder() : std::filesystem::path());
   return mapped_robot(
       robot, "with_fields", nb::make_tuple(self, size, "cpu", cache),  // on any machine: no answer depends on where
-      [&](auto& without) { return fielded_trees(*robot.trees, {size}, where, kept, without); }, "so no field is used");
+      [&](auto& without) { return fielded_trees(*robot.trees, {size}, where, kept, without); },
+      "reading or sampling fields", "so no field is used");
 }
 
 /// One with cells.
@@ -312,16 +312,8 @@ std::shared_ptr<robot_model> celled_robot(const nb::object& self, nb::handle byt
   const int where = device_number(device);
   return mapped_robot(
       robot, "with_cells", nb::make_tuple(self, size, reach, "cpu"),
-      [&](auto& without) { return celled_trees(*robot.trees, {size, reach}, where, without); }, "so it has none");
-}
-
-const io::kinematic_tree& joints_of(const robot_model& robot) { return robot.described().kinematics(); }
-
-nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std::size_t> shape) {
-  std::vector<double> values(16 * poses.size());
-  for (std::size_t k = 0; k < poses.size(); ++k) Eigen::Map<row_major>(values.data() + 16 * k) = poses[k].matrix();
-  shape.push_back(4), shape.push_back(4);
-  return own_array(std::move(values), shape);
+      [&](auto& without) { return celled_trees(*robot.trees, {size, reach}, where, without); }, "making cells",
+      "so it has none");
 }
 
 /// One of the facts that brackets have, of each part.
@@ -334,25 +326,6 @@ nb::object facts_of(const robot_model& robot, real part_facts::* which) {
       *robot.trees);
   const std::size_t n = all.size();
   return own_array(std::move(all), {n});
-}
-
-/// What `ask` returns; of what it refuses, `which` says where it is.
-template <class Ask>
-auto named(Ask ask, const std::string& which = {}) {
-  try {
-    return ask();
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("clearance: " + which + error.what());
-  }
-}
-
-/// "a", "b" and 3 more
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 12;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(names.size(), most); ++k)
-    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + io::quoted(names[k]);
-  return text + (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
 }
 
 /// The robot's tree, in which joints that follow others are free where `values` names them.
@@ -411,6 +384,34 @@ nb::object radii_of_parts(const robot_model& robot, nb::handle joints, nb::handl
 
 }  // namespace
 
+void build(robot_model& made) {
+  const auto options = [&](std::size_t k) { return part_options{.tolerance = made.bodies[k].tolerance}; };
+  if (made.spheres)
+    made.trees = std::make_shared<const robot_trees<>>(
+        make_model<sphere>(made.bodies | std::views::transform(&io::body::packed), options));
+  else
+    made.trees = std::make_shared<const robot_trees<>>(
+        make_model<obb>(made.bodies | std::views::transform(&io::body::closed), options));
+  std::vector<std::string> names;
+  for (const io::body& body : made.bodies) names.push_back(body.name);
+  made.names = std::make_shared<const std::vector<std::string>>(std::move(names));
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(names.size(), most); ++k)
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + io::quoted(names[k]);
+  return text + (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
+}
+
+nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std::size_t> shape) {
+  std::vector<double> values(16 * poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) Eigen::Map<row_major>(values.data() + 16 * k) = poses[k].matrix();
+  shape.push_back(4), shape.push_back(4);
+  return own_array(std::move(values), shape);
+}
+
 const io::robot& robot_model::described() const {
   if (!description)
     throw std::invalid_argument(
@@ -456,7 +457,7 @@ joint_rows joints_given(const robot_model& robot, nb::handle given, joint_readin
   return rows;
 }
 
-std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument) {
+std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument, std::vector<std::size_t>* shape) {
   matrix_array array;
   if (!nb::try_cast(given, array)) {
     nb::object plain = nb::none();
@@ -471,6 +472,8 @@ std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument) 
   if (array.ndim() < 2 || array.shape(array.ndim() - 1) != 4 || array.shape(array.ndim() - 2) != 4)
     throw std::invalid_argument(std::string("clearance: ") + argument + " has the shape (..., 4, 4), not " +
                                 shape_and_type(given));
+  if (shape)
+    for (std::size_t k = 0; k + 2 < array.ndim(); ++k) shape->push_back(array.shape(k));
   std::vector<Eigen::Isometry3d> poses(array.size() / 16);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Eigen::Map<const row_major> m(array.data() + 16 * k);
@@ -557,7 +560,9 @@ void bind_robot(nb::module_& m) {
           nb::arg("spheres").none() = nb::none(), nb::arg("geometry") = "collision", nb::arg("packages") = nb::dict(),
           nb::arg("exclude_links") = std::vector<std::string>(), nb::arg("cache") = true,
           nb::arg("gltf_up").none() = nb::none(),
-          "Reads a URDF file and its meshes. model: \"spheres\" (packed into each link, `spheres` of them; kept "
+          "Reads a URDF file and its meshes; or a description itself, such as ROS's robot_description or what xacro "
+          "gives, whose meshes are found from the working folder. model: \"spheres\" (packed into each link, `spheres` "
+          "of them; kept "
           "in the cache) or \"triangles\" (exact). packages: the folder of package://name. gltf_up: \"y\" or \"z\", "
           "which "
           "axis of glTF meshes is up; None: as a link's other geometry shows, else y, with a note. Raises RuntimeError "
@@ -592,8 +597,19 @@ void bind_robot(nb::module_& m) {
           "has_cells",
           [](const robot_model& r) { return std::visit([](const auto& m) { return !m.cells().empty(); }, *r.trees); },
           "Whether the robot was made by with_cells, and a part has cells.")
-      .def_prop_ro("name", [](const robot_model& r) { return r.name; })
-      .def_prop_ro("model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; })
+      .def("attach", &attached_robot, nb::arg("link"), nb::arg("object").none(), nb::arg("pose").none() = nb::none(),
+           "The robot with an object that one of its links holds: joints, many configurations and gradients go on as "
+           "before. object: a Robot without joints, of the same model, whose parts' names are new. pose: "
+           "link-from-object, (4, 4). Near maps are not kept. Raises ValueError otherwise.")
+      .def("release", &released_robot, nb::arg("parts") = std::vector<std::string>(),
+           "The robot without these parts of what is attached, by their names; by default without all of it.")
+      .def_prop_ro(
+          "attached", [](const robot_model& r) { return r.held; }, "The names of the parts that are attached.")
+      .def_prop_ro(
+          "name", [](const robot_model& r) { return r.name; }, "As its description, or the caller, names it.")
+      .def_prop_ro(
+          "model", [](const robot_model& r) { return r.spheres ? "spheres" : "triangles"; },
+          "\"spheres\" or \"triangles\": what stands for its solids.")
       .def_prop_ro(
           "parts", [](const robot_model& r) { return *r.names; }, "The names of the parts, in their order.")
       .def_prop_ro(

@@ -27,6 +27,7 @@ struct robot_model {
   std::vector<clearance::io::body> bodies;
   std::optional<clearance::io::robot> description;  ///< Of a URDF file.
   std::vector<std::string> notes;
+  std::vector<std::string> held;  ///< The parts that are attached.
   bool spheres = true;
   const char* maker = nullptr;  ///< What makes it again, and
   nb::object recipe;            ///< its arguments, for pickle.
@@ -42,9 +43,35 @@ struct robot_model {
   const clearance::io::robot& described() const;
 };
 
+/// Builds the trees of its bodies, and takes their names. Without the interpreter.
+void build(robot_model& made);
+
+/// The tree of a robot with joints. Throws std::invalid_argument for one without.
+inline const clearance::io::kinematic_tree& joints_of(const robot_model& robot) {
+  return robot.described().kinematics();
+}
+
+/// What `ask` returns; of what it refuses, `which` says where it is.
+template <class Ask>
+auto named(Ask ask, const std::string& which = {}) {
+  try {
+    return ask();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("clearance: " + which + error.what());
+  }
+}
+
+/// "a", "b" and 3 more
+std::string listed(const std::vector<std::string>& names);
+
+/// Poses as an array of shape (..., 4, 4).
+nb::object rows_of(const std::vector<Eigen::Isometry3d>& poses, std::vector<std::size_t> shape);
+
 /// One pose, or several, from arrays of shape (..., 4, 4). Throws std::invalid_argument, which names the argument.
 Eigen::Isometry3d pose_of(nb::handle given, const char* argument);
-std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument);
+/// `shape`: of the axes before a pose's.
+std::vector<Eigen::Isometry3d> poses_of(nb::handle given, const char* argument,
+                                        std::vector<std::size_t>* shape = nullptr);
 
 /// How joint values are read.
 struct joint_reading {
@@ -84,5 +111,12 @@ clearance::io::digest digest_of(std::span<const Eigen::Isometry3d> poses);
 
 /// Columns that stand for `from`'s values, as columns of the robot's own: those of joints that were freed are left out.
 std::vector<std::size_t> own_columns(const robot_model& robot, const clearance::io::kinematic_tree& from);
+
+/// The robot with an object's parts, each on a link of its own that a fixed joint holds. Throws std::invalid_argument.
+std::shared_ptr<robot_model> attached_robot(const nb::object& self, const std::string& link, const nb::object& object,
+                                            nb::handle pose);
+/// The robot without some of what is attached; without names, without all of it. Throws std::invalid_argument for a
+/// name of nothing that is attached, and for one that holds something else.
+std::shared_ptr<robot_model> released_robot(const nb::object& self, const std::vector<std::string>& names);
 
 void bind_robot(nb::module_& m);

@@ -23,6 +23,7 @@ std::optional<seen_array> from_dlpack(nb::handle given) {
   seen.kind = code == nb::dlpack::dtype_code::Float  ? 'f'
               : code == nb::dlpack::dtype_code::UInt ? 'u'
               : code == nb::dlpack::dtype_code::Int  ? 'i'
+              : code == nb::dlpack::dtype_code::Bool ? 'b'
                                                      : '?';
   if (array.device_type() == nb::device::cuda::value)
     seen.device = array.device_id();

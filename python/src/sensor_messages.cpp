@@ -52,7 +52,12 @@ camera camera_of(std::int64_t width, std::int64_t height, nb::handle k, nb::hand
   return camera(info);
 }
 
-nb::object rays_of(const camera& seen) {
+/// A camera, and what makes it again, for pickle.
+struct camera_object : camera {
+  nb::object recipe;
+};
+
+nb::object rays_of(const camera_object& seen) {
   ray_table table;
   {
     nb::gil_scoped_release others_run;
@@ -113,12 +118,14 @@ nb::tuple compressed_depth_of(const std::string& format,
 }  // namespace
 
 void bind_sensor_messages(nb::module_& m) {
-  nb::class_<camera>(m, "Camera", "A calibrated camera of a ROS CameraInfo: which ray each pixel sees.")
+  nb::class_<camera_object>(m, "Camera", "A calibrated camera of a ROS CameraInfo: which ray each pixel sees.")
       .def(
           "__init__",
-          [](camera* self, std::int64_t width, std::int64_t height, nb::handle k, nb::handle d,
+          [](camera_object* self, std::int64_t width, std::int64_t height, nb::handle k, nb::handle d,
              const std::string& model, std::array<std::int64_t, 2> binning, std::array<std::int64_t, 4> roi) {
-            new (self) camera(camera_of(width, height, k, d, model, binning, roi));
+            const nb::object copied = nb::module_::import_("copy").attr("deepcopy");
+            new (self) camera_object{camera_of(width, height, k, d, model, binning, roi),
+                                     nb::make_tuple(width, height, copied(k), copied(d), model, binning, roi)};
           },
           nb::arg("width"), nb::arg("height"), nb::arg("k"), nb::arg("d") = nb::make_tuple(),
           nb::arg("distortion_model") = "", nb::kw_only(), nb::arg("binning") = std::array<std::int64_t, 2>{0, 0},
@@ -128,18 +135,27 @@ void bind_sensor_messages(nb::module_& m) {
           "the "
           "sensor's pixels. Of a rectified image give P[:, :3] as k, and no d. ValueError if they contradict one "
           "another.")
-      .def_prop_ro("width", &camera::width, "The width of the images, in pixels.")
-      .def_prop_ro("height", &camera::height, "The height of the images, in pixels.")
+      .def_prop_ro(
+          "width", [](const camera_object& c) { return c.width(); }, "The width of the images, in pixels.")
+      .def_prop_ro(
+          "height", [](const camera_object& c) { return c.height(); }, "The height of the images, in pixels.")
       .def_prop_ro(
           "intrinsics",
-          [](const camera& c) -> nb::object {
+          [](const camera_object& c) -> nb::object {
             const auto at = c.pinhole();
             return at ? nb::object(nb::make_tuple(at->fx, at->fy, at->cx, at->cy)) : nb::none();
           },
           "(fx, fy, cx, cy), pixels; None if the lens bends rays or pixels have skew: then rays() is needed.")
       .def("rays", &rays_of,
            "x / z and y / z of each pixel, (height, width, 2), float32: about a microsecond each. NaN where the lens "
-           "folds or sees too wide, so the points of such pixels are dropped as not_finite. ValueError if all are.");
+           "folds or sees too wide, so the points of such pixels are dropped as not_finite. ValueError if all are.")
+      .def("__reduce__",
+           [](const camera_object& c) {
+             return nb::make_tuple(nb::module_::import_("clearance._made").attr("camera"), c.recipe);
+           })
+      .def("__repr__", [](const camera_object& c) {
+        return "<Camera of " + std::to_string(c.width()) + " x " + std::to_string(c.height()) + " pixels>";
+      });
   m.def("_cloud_layout", &layout_of, nb::arg("message"), nb::arg("data"));
   m.def("_compressed_depth", &compressed_depth_of, nb::arg("format"), nb::arg("data"));
   m.def("_is_depth", [](const std::string& format) { return io::depth_format(format).has_value(); }, nb::arg("format"));

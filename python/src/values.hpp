@@ -4,7 +4,9 @@
 
 #include "arrays.hpp"
 #include "declared.hpp"
+#include "sentences.hpp"
 
+#include <clearance/ground/numbered.hpp>
 #include <clearance/io/digest.hpp>
 #include <clearance/point_source.hpp>
 
@@ -14,17 +16,17 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <span>
 
 namespace nb = nanobind;
 
-using part_names = std::shared_ptr<const std::vector<std::string>>;
-
 /// What an answer is about: the robot, by the names of its parts, which are for what is printed, too; and where it was.
 struct asked_about {
   part_names names;
   clearance::io::digest poses;
+  std::vector<std::size_t> shape = {};  ///< Of the configurations, if they have several axes.
 };
 
 /// A result in Python.
@@ -121,6 +123,37 @@ nb::object to_python(const T& value, nb::handle owner, const asked_about& about)
   }
 }
 
+/// Sets a member to what `to_python` made of it.
+template <class T>
+void from_python(T& to, nb::handle given) {
+  if constexpr (std::is_same_v<T, clearance::vec3> || std::is_same_v<T, clearance::position>) {
+    using number = std::remove_cvref_t<decltype(to.x)>;
+    const auto at = [&](int k) { return number(nb::cast<double>(given[nb::int_(k)])); };
+    to = {at(0), at(1), at(2)};
+  } else if constexpr (std::is_same_v<T, std::uint32_t>) {
+    to = given.is_none() ? clearance::none : nb::cast<std::uint32_t>(given);
+  } else if constexpr (std::is_array_v<T>) {
+    std::apply(
+        [&](const auto&... v) {
+          ((int(v.value) == 0 ? void() : void(to[int(v.value)] = nb::cast<std::uint64_t>(given[v.name]))), ...);
+        },
+        declared<clearance::drop_reason>::values);
+  } else if constexpr (is_array<T>) {
+    using element = typename T::value_type;
+    const nb::object plain =
+        nb::module_::import_("numpy").attr("ascontiguousarray")(given, dtype_of<element>()).attr("reshape")(-1);
+    const auto bytes = nb::cast<nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig>>(plain.attr("view")("u1"));
+    to.resize(bytes.size() / sizeof(element));
+    if (bytes.size() != 0) std::memcpy(to.data(), bytes.data(), bytes.size());
+  } else if constexpr (declared_struct<T>) {
+    to = nb::cast<const answered<T>&>(given).value;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    to = T(nb::cast<double>(given));
+  } else {
+    to = nb::cast<T>(given);
+  }
+}
+
 /// The least one that fits, as in "MinDistanceResult(distance=0.1640, ...)".
 std::string repr_of(nb::handle object, const char* name, std::span<const char* const> members);
 
@@ -129,8 +162,15 @@ void for_each_member(F f) {
   std::apply([&](const auto&... m) { (f(m), ...); }, declared<T>::members);
 }
 
-/// "free: 0.164 m (certainly 0.160 to 0.164), hand to point 84,612"
-std::string sentence_of(const clearance::min_distance_result& r, const part_names& names);
+/// The members by their names, as plain values: those of nested results too, states as their names, arrays as copies.
+nb::dict dict_of(nb::handle object, std::span<const char* const> members);
+
+/// A part by its number, or by the name of its link. Throws IndexError or ValueError.
+std::size_t part_of(nb::handle given, const char* argument, const part_names& names);
+
+/// What pickle keeps of whom a result is about; and back.
+nb::tuple kept_of(const asked_about& about);
+asked_about about_of(const nb::tuple& kept);
 
 /// What Python gives for an argument of a method, whatever it is, so that the refusal is a sentence.
 template <class T>
@@ -139,9 +179,9 @@ struct given_for {
 };
 /// Throws IndexError for a number that is none of anything, TypeError for what is no number.
 template <class T>
-T argument_of(given_for<T> given, const char* name) {
+T argument_of(given_for<T> given, const char* name, const part_names& names = {}) {
   if constexpr (std::is_integral_v<T>)
-    return index_of(given.it, name);
+    return std::string_view(name) == "part" ? part_of(given.it, name, names) : index_of(given.it, name);
   else
     return number_of(given.it, name);
 }
@@ -163,7 +203,7 @@ struct method_of {
   nb::object operator()(nb::handle_t<answered<R>> self, given_for<A>... given) const {
     const auto& its = nb::cast<const answered<R>&>(self);
     std::size_t k = 0;
-    const std::tuple<A...> all{argument_of(given, names[k++])...};
+    const std::tuple<A...> all{argument_of(given, names[k++], its.about.names)...};
     return to_python(std::apply([&](const A&... a) -> decltype(auto) { return call(its.value, a...); }, all), self,
                      its.about);
   }
@@ -190,9 +230,11 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
     members.push_back(member.name);
     bound.def_prop_ro(
         member.name,
-        [at = member.at](nb::handle_t<answered<R>> self) {
+        [at = member.at, of_each = std::string_view(member.name) == "of"](nb::handle_t<answered<R>> self) {
           const auto& its = nb::cast<const answered<R>&>(self);
-          return to_python(its.value.*at, self, its.about);
+          nb::object value = to_python(its.value.*at, self, its.about);
+          if (of_each && its.about.shape.size() > 1) value = value.attr("reshape")(nb::cast(its.about.shape));
+          return value;
         },
         member.doc);
   });
@@ -208,8 +250,41 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
           return nb::cast((*self.about.names)[part]);
         },
         "The name of that part, or None.");
-  if constexpr (std::is_same_v<R, clearance::min_distance_result>)
+  if constexpr (requires(const R& r) { typename decltype(r.parts)::value_type; }) {
+    static const std::string signature =
+        std::string("def of(self, part: int | str) -> ") + declared<typename decltype(R::parts)::value_type>::name;
+    bound.def(
+        "of",
+        [](nb::handle_t<answered<R>> self, nb::handle part) {
+          const auto& its = nb::cast<const answered<R>&>(self);
+          const std::size_t k = part_of(part, "part", its.about.names);
+          clearance::check_number("part", k, its.value.parts.size());
+          return to_python(its.value.parts[k], self, its.about);
+        },
+        nb::arg("part").none(), nb::sig(signature.c_str()),
+        "That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.");
+  }
+  if constexpr (requires(const R& r, const part_names& names) { sentence_of(r, names); })
     bound.def("__str__", [](const answered<R>& self) { return sentence_of(self.value, self.about.names); });
   bound.def("__repr__", [](nb::handle self) { return repr_of(self, declared<R>::name, members); });
+  bound.def(
+      "to_dict", [](nb::handle self) { return dict_of(self, members); },
+      nb::sig("def to_dict(self) -> dict[str, typing.Any]"),
+      "All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.");
+  bound.def("__copy__", [](nb::handle self) { return nb::borrow(self); });  // it never changes
+  bound.def("__deepcopy__", [](nb::handle self, nb::handle) { return nb::borrow(self); }, nb::arg("memo"));
+  bound.def("__getstate__", [](nb::handle self) {
+    nb::list all;
+    for (const char* name : members) all.append(self.attr(name));
+    return nb::make_tuple(nb::tuple(all), kept_of(nb::cast<const answered<R>&>(self).about));
+  });
+  bound.def("__setstate__", [](answered<R>& self, const nb::tuple& state) {
+    const nb::tuple values(state[0]);
+    if (values.size() != members.size())
+      throw std::invalid_argument(std::string("clearance: another version pickled this ") + declared<R>::name);
+    new (&self) answered<R>{{}, about_of(nb::tuple(state[1]))};
+    std::size_t k = 0;
+    for_each_member<R>([&](const auto& member) { from_python(self.value.*(member.at), values[k++]); });
+  });
   return bound;
 }

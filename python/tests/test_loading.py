@@ -28,6 +28,14 @@ def test_a_slow_load_says_how_many_links_are_done(caplog):
         assert re.fullmatch(r"packing 2 links: [0-2] done, \d+/20000 spheres", line)
 
 
+def test_near_maps_are_said_before_they_are_made(caplog):
+    caplog.set_level("INFO", "clearance")
+    ball = clearance.Robot.from_spheres({"a": [[0, 0, 0, 0.1]], "b": [[1, 0, 0, 0.1]]})
+    ball.with_fields(40_000)
+    ball.with_cells(40_000, reach=1)
+    assert [r.message for r in caplog.records] == ["reading or sampling fields of 2 parts", "making cells of 2 parts"]
+
+
 def test_a_quick_load_says_nothing(caplog):
     caplog.set_level(logging.INFO, "clearance")
     load(10)

@@ -37,7 +37,7 @@ if WHY:
 # ---- what is asked -----------------------------------------------------------------------------------------------------
 
 PLANS = ("MinDistances", "MinDistancesPerPart", "InCollisions")
-WAITS = ("CertainDistance", "MinDistanceSupported", "Unseen")
+WAITS = ("CertainDistance", "MinDistanceSupported", "SeenAndUnseen", "Unseen")
 OPTIONS = {
     "Distances": [{}, {"d_max": 0.5, "which": True}], "SignedDistances": [{}, {"d_max": 0.5, "which": True}],
     "DistancesPerPart": [{"d_max": 0.5}], "InCollision": [{"margins": 0.0}, {"margins": 0.2}],
@@ -83,7 +83,7 @@ def scene(request, tmp_path_factory):
 
 def asked(scene, name):
     """The questions of a kind; none, if this robot cannot be asked."""
-    if name == "SignedDistances" and scene.robot.model == "spheres" or name == "Unseen":  # which is about images alone
+    if name == "SignedDistances" and scene.robot.model == "spheres" or name in ("Unseen", "SeenAndUnseen"):  # of images
         return []
     if name == "PartWitnesses":
         least = clearance.Query(scene.robot, clearance.MinDistancePerPart())
@@ -182,7 +182,7 @@ def test_an_enqueued_answer_has_the_bits_of_the_host(scene, name):
 
 @pytest.mark.parametrize("name", WAITS)
 def test_what_needs_the_host_is_not_enqueued(scene, name):
-    question = clearance.Unseen() if name == "Unseen" else asked(scene, name)[0]
+    question = getattr(clearance, name)() if name.endswith("Unseen") else asked(scene, name)[0]
     ask = clearance.Query(scene.robot, question, device=GPU)
     with pytest.raises(ValueError, match=f"{name} cannot be enqueued"):
         ask.enqueue(clearance.DeviceArray(scene.points), **scene.where(name))

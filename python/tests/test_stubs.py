@@ -76,6 +76,8 @@ WRONG = {
     "an option that is not there": "clearance.Distances(dmax=1)",
     "a result as a question": "def f(robot: clearance.Robot, r: clearance.MinDistanceResult) -> None:\n"
                               "    clearance.Query(robot, r)",
+    "a model that is none": "clearance.Robot.from_urdf('arm.urdf', model='mesh')",
+    "joints that are a name": "def f(robot: clearance.Robot) -> None:\n    robot.poses(joints=robot)",
     "the result of another question": "def f(ask: 'clearance.Query[clearance.PointDistances]') -> float:\n"
                                       "    return ask([[1.0, 2.0, 3.0]]).lower",
 }
@@ -202,3 +204,19 @@ def test_mistakes_are_found(errors):
 def test_the_examples_are_clean(errors):
     assert examples()
     assert not [e for e in errors if not re.search(r"wrong_\d\.py|program\.py", e)]
+
+
+def test_every_public_member_says_what_it_is():
+    silent = []
+    for name, its in vars(clearance).items():
+        if name.startswith("_") or isinstance(its, (int, type(clearance))):
+            continue
+        if not (its.__doc__ or "").strip():
+            silent.append(name)
+        if not isinstance(its, type) or issubclass(its, int):
+            continue
+        for member, value in vars(its).items():
+            said = (getattr(value, "__doc__", "") or "").strip().splitlines()
+            if not member.startswith("_") and not [line for line in said if line and not re.match(r"\w+\(self.*\) -> ", line)]:
+                silent.append(f"{name}.{member}")
+    assert not silent, f"help() says nothing of {silent}"

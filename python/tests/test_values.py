@@ -29,6 +29,7 @@ def options():
              "DistancesPerPart": {"d_max": 0.5},
              "Unseen": {"room": clearance.Hiding(0.25, 5.0, True), "half_pixel": 0.01, "labels": np.array([0, 1], "u1"),
                         "places": True}}
+    given["SeenAndUnseen"] = given["Unseen"]
     minima = np.zeros(2, [("distance", "<f4"), ("cloud", "<u4"), ("point", "<u4"), ("primitive", "<u4")])
     given["PartWitnesses"] = {"minima": minima}
     radii = [("joints", "<f8"), ("delay", "<f8")]
@@ -73,8 +74,8 @@ def ask_all(rng):
             question = clearance.PartWitnesses(s.ask(clearance.MinDistancePerPart()).parts)
         if name.startswith("InCollision"):
             question = type(question)(0.1)
-        if name == "Unseen":
-            yield name, depth_of_integers(rng).ask(clearance.Unseen())
+        if name in ("Unseen", "SeenAndUnseen"):
+            yield name, depth_of_integers(rng).ask(type(question)())
             continue
         plan = name in ("MinDistances", "MinDistancesPerPart", "InCollisions")
         yield name, s.ask(question, **({"poses": configurations(s)[0]} if plan else {}))

@@ -104,11 +104,10 @@ inline std::string between(const std::string& text, const std::string& from, con
 }
 
 /// The questions that headers declare: structs with a `result`, in questions/ and beside it.
-inline std::set<std::string> declared_questions(bool beside) {
+inline std::set<std::string> declared_questions() {
   std::set<std::string> all;
   const std::filesystem::path include = testing::checkout("include/clearance");
   for (const auto& folder : {include / "questions", include}) {
-    if (folder == include && !beside) continue;
     for (const auto& file : std::filesystem::directory_iterator(folder)) {
       if (file.path().extension() != ".hpp") continue;
       std::istringstream lines(text_of(file.path()));
@@ -132,10 +131,11 @@ struct offers {
     return !questions.contains(question) ? "no" : !more || uncertain.contains(question) ? "yes" : "measured";
   }
 };
-/// The Python package has every question of questions/ that is no template (python/declarations.py).
+/// The Python package has every question that is no template (python/declarations.py), and a function of that name.
 inline offers python_offers() {
-  offers all{declared_questions(false), {}};
+  offers all{declared_questions(), {}};
   all.questions.erase("collect");
+  all.questions.insert("motion_clearance");
   const std::string text = text_of(testing::checkout("python/src/asker.hpp"));
   all.uncertain = found_in(between(text, "requires one_of<Q,", ">"), "clearance::(\\w+)");
   return all;

@@ -15,7 +15,7 @@ TEST_CASE("every question that a header declares is in the table") {
     static_assert(clearance::has_list<Q>, "a question of the library lists what it can: a misspelt member is missed");
     names.insert(name);
   });
-  CHECK(names == declared_questions(true));
+  CHECK(names == declared_questions());
 }
 
 TEST_CASE("every question takes full balls where it takes the balls of uncertain points") {

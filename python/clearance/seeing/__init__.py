@@ -16,15 +16,15 @@ from .pictures import picture as write_picture  # show has an argument of the na
 from .scenes import Scene, least_of, scene
 
 if TYPE_CHECKING:
-    from .._core import Array, Cloud, Robot
+    from .._core import _Array, Cloud, Robot
 
 __all__ = ["Scene", "least_of", "picture", "scene", "show"]
 
 
 def show(
     robot: Robot | Scene,
-    points: Array | Cloud | None = None,
-    joints: Array | Mapping[str, float] | None = None,
+    points: _Array | Cloud | None = None,
+    joints: _Array | Mapping[str, float] | None = None,
     *,
     rerun: str | os.PathLike[str] | None = None,
     picture: str | os.PathLike[str] | None = None,

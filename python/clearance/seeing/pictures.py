@@ -17,7 +17,7 @@ from .raster import Canvas, png, unit
 from .scenes import Scene, metres, scene
 
 if TYPE_CHECKING:
-    from .._core import Array, Cloud, Robot
+    from .._core import _Array, Cloud, Robot
 
 
 def _corners(part):
@@ -155,8 +155,8 @@ def render(seen, **options):
 
 def picture(
     robot: Robot | Scene,
-    points: Array | Cloud | None = None,
-    joints: Array | Mapping[str, float] | None = None,
+    points: _Array | Cloud | None = None,
+    joints: _Array | Mapping[str, float] | None = None,
     *,
     output: str | os.PathLike[str] = "clearance.png",
     width: int = 960,
