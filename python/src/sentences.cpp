@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 using namespace clearance;
 
@@ -45,7 +46,7 @@ std::string no_data(std::uint64_t seen) {
 }
 
 /// The least of some configurations' results, each of `parts` of them.
-std::string least_of(const std::vector<min_distance_result>& all, std::size_t parts, const part_names& names) {
+std::string least_of(std::span<const min_distance_result> all, std::size_t parts, const part_names& names) {
   const std::size_t configurations = parts == 0 ? 0 : all.size() / parts;
   std::string text = counted(configurations, "configuration");
   const auto nearer = [](const auto& a, const auto& b) { return a.distance < b.distance; };  // NaN is none
@@ -57,7 +58,7 @@ std::string least_of(const std::vector<min_distance_result>& all, std::size_t pa
          sentence_of(*least, names);
 }
 
-std::string least_of(const std::vector<real>& distances, const point_counts& counts) {
+std::string least_of(std::span<const real> distances, const point_counts& counts) {
   real least = infinity;
   for (const real d : distances)
     if (d < least) least = d;  // NaN is none
