@@ -76,7 +76,9 @@ class engine {
         points_{on, model, from...},
         result_{.distance = arriving<real>(back_.memory()),
                 .part = arriving<std::uint32_t>(back_.memory()),
-                .primitive = arriving<std::uint32_t>(back_.memory())} {
+                .primitive = arriving<std::uint32_t>(back_.memory()),
+                .counts = {},
+                .certain = {}} {
     Q::check_robot(on, model);
   }
 

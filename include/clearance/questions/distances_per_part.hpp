@@ -112,10 +112,11 @@ struct distances_per_part {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result r{.distance = arriving<real>(a.arrivals())};
-    r.points = a.points;
-    r.parts = a.parts();
-    r.certain = a.certain();
+    result r{.distance = arriving<real>(a.arrivals()),
+             .points = a.points,
+             .counts = {},
+             .certain = a.certain(),
+             .parts = a.parts()};
     a.bring(backends::read_array{r.distance, from.distance, a.points * a.parts()},
             backends::read_value{r.counts, from.counts});
     return r;

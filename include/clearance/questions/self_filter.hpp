@@ -227,7 +227,7 @@ struct self_filter {
   }
   template <class Asked>
   result read(const Asked& a, const out& from) const {
-    result r{.labels = arriving<point_label>(a.arrivals())};
+    result r{.labels = arriving<point_label>(a.arrivals()), .offsets = {}, .rest = {}, .counts = {}};
     a.bring(backends::read_array{r.labels, from.labels, a.points}, backends::read_value{r.counts, from.counts});
     r.offsets.assign(a.first.begin(), a.first.begin() + std::ptrdiff_t(a.clouds));
     r.offsets.push_back(a.points);
