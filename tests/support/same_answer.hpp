@@ -64,8 +64,10 @@ std::vector<std::byte> bits_of(const T& a) {
   return bits;
 }
 
-template <class T>
-bool same_answer(const T& a, const T& b) {
+/// Have two results the same bits? Lists may be of two kinds.
+template <class T, class U>
+bool same_answer(const T& a, const U& b) {
+  if constexpr (!std::is_same_v<T, U>) static_assert(std::is_same_v<typename T::value_type, typename U::value_type>);
   return bits_of(a) == bits_of(b);
 }
 
