@@ -13,7 +13,7 @@ bool writes_the_same(const On& on, Query& query, const std::vector<Eigen::Isomet
                      const Q& q, const typename Q::result& expected, std::size_t parts, std::size_t points) {
   using namespace clearance;
   auto counts = on.template make_scratch<point_counts>(1);
-  const auto same = [&]<class T>(const auto& written, const std::vector<T>& wanted) {
+  const auto same = [&](const auto& written, const auto& wanted) {
     return same_answer(on.copy_out(written.data(), wanted.size()), wanted);
   };
   const auto same_counts = [&](const point_counts& wanted) {

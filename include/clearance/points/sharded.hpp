@@ -29,25 +29,28 @@ class sharded {
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
 
   CLEARANCE_HD std::size_t size() const { return first_[most]; }
+  /// f(piece, j) of the piece that has point i as its j-th.
+  template <class F>
+  CLEARANCE_HD auto with_piece_of(std::size_t i, const F& f) const {
+    std::uint32_t k = 0;
+    while (i >= first_[k + 1]) ++k;
+    return f(piece_[k], i - first_[k]);
+  }
   CLEARANCE_HD sample operator[](std::size_t i) const {
-    const std::size_t k = piece_with(i);
-    return piece_[k][i - first_[k]];
+    return with_piece_of(i, [](const S& piece, std::size_t j) { return piece[j]; });
   }
   CLEARANCE_HD capsule around(std::size_t i, vec3 p) const
     requires ball_source<S>
   {
-    const std::size_t k = piece_with(i);
-    return piece_[k].around(i - first_[k], p);
+    return with_piece_of(i, [p](const S& piece, std::size_t j) { return piece.around(j, p); });
   }
   CLEARANCE_HD radius_shares shares(std::size_t i, vec3 p) const
     requires shared_source<S>
   {
-    const std::size_t k = piece_with(i);
-    return piece_[k].shares(i - first_[k], p);
+    return with_piece_of(i, [p](const S& piece, std::size_t j) { return piece.shares(j, p); });
   }
   CLEARANCE_HD real beyond(std::size_t i, vec3 p) const {
-    const std::size_t k = piece_with(i);
-    return beyond_range(piece_[k], i - first_[k], p);
+    return with_piece_of(i, [p](const S& piece, std::size_t j) { return beyond_range(piece, j, p); });
   }
   CLEARANCE_HD vec3 sensor() const { return sensor_of(piece_[0]); }
   /// The largest errors of all pieces.
@@ -75,11 +78,6 @@ class sharded {
   std::size_t first(std::size_t k) const { return first_[k]; }
 
  private:
-  CLEARANCE_HD std::uint32_t piece_with(std::size_t i) const {
-    std::uint32_t k = 0;
-    while (i >= first_[k + 1]) ++k;
-    return k;
-  }
   template <std::size_t... K>
   sharded(const std::vector<S>& pieces, std::index_sequence<K...>)
       : piece_{pieces[std::min(K, pieces.size() - 1)]...}, pieces_(pieces.size()) {

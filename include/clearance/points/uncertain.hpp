@@ -177,29 +177,25 @@ struct as_measured {
   }
 };
 
-/// Balls that are larger by their gap, and so contain what they fill. Other sources stay as they are.
+/// The same cloud, in which full balls are larger by their gap, and so contain what they fill. Throws
+/// std::invalid_argument about a user's own balls that have a gap, but no `filled()`.
 struct as_filled {
   template <point_source S>
-  CLEARANCE_HD S operator()(const S& s) const {
-    return s;
-  }
-  template <point_source S>
-  solid_balls<S> operator()(const solid_balls<S>& s) const {
-    return s.filled();
-  }
-  template <ball_source S, sensor_noise N>
-  auto operator()(const uncertain<S, N>& s) const {
-    uncertain<S, N> same = s;
-    same.source = (*this)(s.source);
-    return same;
-  }
-  template <ball_source S>
-  auto operator()(const sliced<S>& s) const {
-    return sliced((*this)(s.whole), s.begin, s.count);
-  }
-  template <ball_source S>
-  sharded<S> operator()(const sharded<S>& s) const {
-    return s.with_pieces(*this);
+  S operator()(const S& s) const {
+    if constexpr (requires { s.filled(); }) {
+      return s.filled();
+    } else if constexpr (!ball_source<S>) {
+      return s;
+    } else if constexpr (sharded_source<S>) {
+      return s.with_pieces(*this);
+    } else if constexpr (requires { S::viewed; }) {
+      S same = s;
+      same.*S::viewed = (*this)(s.*S::viewed);
+      return same;
+    } else {
+      if (rounding_of(s).gap > 0) detail::refuse_source("balls that have a gap have no filled()");
+      return s;
+    }
   }
 };
 

@@ -148,6 +148,17 @@ struct uncertain_pair {
   real gap = 0;         ///< Of its cloud.
 };
 
+/// Point i as it was measured, as `scan::element_less`: without what is uncertain about it.
+template <point_source S>
+CLEARANCE_HD auto measured_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
+  if constexpr (vague_source<S> && sharded_source<S>)
+    return s.with_piece_of(i, [=](const auto& piece, std::size_t j) { return measured_less(piece, j, x, origin); });
+  else if constexpr (vague_source<S> && requires { S::viewed; })
+    return measured_less(s.*S::viewed, s.number_in_viewed(i), x, origin);
+  else
+    return scan::element_less(s, i, x, origin);
+}
+
 /// Reads a part's pair again, as it was measured. The number after the last part's is the nominal answer's: of its
 /// point the shares are read.
 template <class PartView, point_source Source>
@@ -180,8 +191,7 @@ struct read_pair {
     if (i >= part_count) return;
     const auto k = std::uint32_t(i);
     const frames::placement place = places[k];
-    const auto measured = as_measured{}(source);
-    const auto q = scan::moved(place.part_from_cloud, scan::element_less(measured, least.point, p - origin, origin));
+    const auto q = scan::moved(place.part_from_cloud, measured_less(source, least.point, p - origin, origin));
     const vec3 at = scan::start_of(q);
     const real radius = shares.sum() + gap,
                within = least.distance + radius + 4 * slack * (absolute(least.distance) + radius + length(at));
