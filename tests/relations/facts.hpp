@@ -97,6 +97,8 @@ class facts {
       add(path, nobody, kind, a);
     } else if constexpr (requires { a.begin(), a.size(); }) {
       list(path, a, kind);
+    } else if constexpr (std::is_same_v<T, counts_by_reason>) {
+      walk(path, a.dropped, kind);
     } else if constexpr (std::is_array_v<T>) {
       for (std::size_t i = 0; i < std::size(a); ++i) walk(next(path, i), a[i], kind);
     } else {
