@@ -186,12 +186,12 @@ struct as_filled {
       return s.filled();
     } else if constexpr (!ball_source<S>) {
       return s;
-    } else if constexpr (sharded_source<S>) {
-      return s.with_pieces(*this);
     } else if constexpr (requires { S::viewed; }) {
       S same = s;
       same.*S::viewed = (*this)(s.*S::viewed);
       return same;
+    } else if constexpr (sharded_source<S>) {
+      return s.with_pieces(*this);
     } else {
       if (rounding_of(s).gap > 0) detail::refuse_source("balls that have a gap have no filled()");
       return s;

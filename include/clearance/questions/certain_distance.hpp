@@ -151,10 +151,10 @@ struct uncertain_pair {
 /// Point i as it was measured, as `scan::element_less`: without what is uncertain about it.
 template <point_source S>
 CLEARANCE_HD auto measured_less(const S& s, std::size_t i, vec3 x, vec3 origin) {
-  if constexpr (vague_source<S> && sharded_source<S>)
-    return s.with_piece_of(i, [=](const auto& piece, std::size_t j) { return measured_less(piece, j, x, origin); });
-  else if constexpr (vague_source<S> && requires { S::viewed; })
+  if constexpr (vague_source<S> && requires { S::viewed; })
     return measured_less(s.*S::viewed, s.number_in_viewed(i), x, origin);
+  else if constexpr (vague_source<S> && sharded_source<S>)
+    return s.with_piece_of(i, [=](const auto& piece, std::size_t j) { return measured_less(piece, j, x, origin); });
   else
     return scan::element_less(s, i, x, origin);
 }
