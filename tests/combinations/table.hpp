@@ -140,7 +140,8 @@ inline offers python_offers() {
   all.uncertain = found_in(between(text, "requires one_of<Q,", ">"), "clearance::(\\w+)");
   return all;
 }
-/// The command lists its questions among the units of its CMake file, and says in questions/asked.hpp what their clouds are.
+/// The command lists its questions among the units of its CMake file, and says in questions/asked.hpp what their clouds
+/// are.
 inline offers command_offers() {
   offers all;
   const std::string list = text_of(testing::checkout("tools/CMakeLists.txt"));

@@ -130,7 +130,7 @@ TEST_CASE("a point source whose members contradict one another is refused before
                                                   {"a noise", [](auto& s) { s.noise.tof.square = -1; }},
                                                   {"no points", [](auto& s) { s.source.points = nullptr; }},
                                               });
-  CHECK(r.checked() == 3 * 40 + 2);
+  CHECK(r.checked() == 3 * 44 + 2);
   // Other engines and forms, with one source.
   const auto null = [](point_span& s) { s.points = nullptr; };
   const auto by = [&](const char* what, const auto& q) {
