@@ -55,6 +55,17 @@ struct cloud_about<Q> {
 template <class Q>
 using clouds_about = std::vector<typename cloud_about<Q>::type>;
 
+// Compiled once for all questions, in read_clouds.cpp: how a host reads each kind of cloud.
+template <class Cloud>
+using read_clouds = clearance::any::detail::clouds_as_one<Cloud>;
+using uncertain_cloud_too = clearance::any::uncertain_too<any_cloud>;
+extern template read_clouds<any_cloud> clearance::any::detail::read_as_one(const std::vector<any_cloud>&);
+extern template read_clouds<uncertain_cloud_too> clearance::any::detail::read_as_one(
+    const std::vector<uncertain_cloud_too>&);
+/// The same behind masks: the labels of each cloud, or null.
+template <class Cloud>
+read_clouds<Cloud> read_behind(std::span<const clearance::point_label* const> labels, const std::vector<Cloud>& clouds);
+
 /// A robot's trees, in memory of the backend `B`.
 template <class B = clearance::host>
 using robot_trees = clearance::any::model<B>;

@@ -20,21 +20,7 @@ class prepared_on_host final : public clearance::any::prepared<Asker, On, Model>
     if constexpr (clearance::lists<Q, clearance::of_images>) {
       return Asker::masked(poses, clouds, labels, question);
     } else {
-      auto all = in_memory::read(clouds);
-      for (std::size_t k = 0; k < clouds.size(); ++k)
-        if (labels[k]) std::visit([&](const auto& cloud) { all[k] = behind(labels[k], cloud); }, clouds[k]);
-      return std::move(in_memory::query_)(poses, all, question);
+      return std::move(in_memory::query_)(poses, read_behind(labels, clouds), question);
     }
-  }
-
- private:
-  template <class S>
-  static auto behind(const clearance::point_label* labels, const clearance::placed<S>& cloud) {
-    return clearance::placed{clearance::any_points(clearance::masked<S>(cloud.source, labels)), cloud.pose};
-  }
-  template <class S, class N>
-  static auto behind(const clearance::point_label* labels, const clearance::placed<clearance::uncertain<S, N>>& cloud) {
-    const clearance::any_points points(clearance::masked<S>(cloud.source.source, labels));
-    return clearance::placed{cloud.source.around_same(points, cloud.source.noise), cloud.pose};
   }
 };

@@ -53,11 +53,15 @@ template <class S, class N>
 auto as_one(const uncertain<S, N>& given) {
   return given.around_same(any_points(given.source), given.noise);
 }
-/// The same clouds as a host reads them: all kinds as one, or as two.
+/// Clouds as a host reads them: all kinds as one, or as two.
 template <class Cloud>
-auto read_as_one(const std::vector<Cloud>& clouds) {
-  using sure = placed<any_points>;
-  std::vector<std::conditional_t<some_vague<Cloud>, std::variant<sure, placed_uncertain<any_points>>, sure>> all;
+using clouds_as_one =
+    std::vector<std::conditional_t<some_vague<Cloud>, std::variant<placed<any_points>, placed_uncertain<any_points>>,
+                                   placed<any_points>>>;
+/// The same clouds. A program that asks many questions says `extern template`, so that it is compiled once.
+template <class Cloud>
+clouds_as_one<Cloud> read_as_one(const std::vector<Cloud>& clouds) {
+  clouds_as_one<Cloud> all;
   for_each_cloud(
       clouds, [&](const auto& source, const Eigen::Isometry3d& pose) { all.push_back(placed{as_one(source), pose}); });
   return all;
