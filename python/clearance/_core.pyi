@@ -30,7 +30,7 @@ class DistanceCertainty:
 
     def to_dict(self) -> dict[str, Any]:
         """
-        Of what it is made: errors of computing, and by how much parts may be nearer than their primitives, metres.
+        What it is made of: errors of computing, and by how much parts may be nearer than their primitives, metres.
         """
 
     def __getstate__(self) -> tuple[object, ...]: ...
@@ -69,7 +69,7 @@ class Robot:
 
     @property
     def has_fields(self) -> bool:
-        """Was it made by with_fields, and are they used?"""
+        """Whether the robot was made by with_fields, and its fields are used."""
 
     def with_cells(self, bytes: int = 67108864, reach: float = 4.0, device: str = 'cpu') -> Robot:
         """
@@ -78,7 +78,7 @@ class Robot:
 
     @property
     def has_cells(self) -> bool:
-        """Was it made by with_cells, and has a part some?"""
+        """Whether the robot was made by with_cells, and a part has cells."""
 
     def attach(self, link: str, object: Robot, pose: ArrayLike | None = None) -> Robot:
         """
@@ -153,7 +153,7 @@ class Robot:
 
     def link_pose(self, link: str, joints: _Array | Mapping[str, float] | None = None, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
         """
-        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Otherwise as poses.
+        World-from-link of any link, (4, 4): with geometry or without, such as a camera's. Arguments are those of poses.
         """
 
     def jacobian(self, joints: _Array | Mapping[str, float] | None, part: int | str, at: ArrayLike, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
@@ -205,6 +205,11 @@ def depth_image(depth: _Array, intrinsics: ArrayLike | None = None, pose: ArrayL
     A depth image, (rows, columns): uint16 times scale (0.001 m unless given; 0 is missing, 65535 saturated), or float32 metres (REP 117, 118). intrinsics: (fx, fy, cx, cy) in pixels or K (3, 3); or rays, (rows, columns, 2): x / z and y / z of each pixel. pose: world-from-camera, z forward.
     """
 
+def cropped(cloud: Cloud, *, inside: object | None = None, outside: object | None = None, pose: ArrayLike | None = None, height: object | None = None, plane: object | None = None) -> Cloud:
+    """
+    The same cloud without points that are no obstacles by their place in the world, which are counted as cropped. Obstacles are inside a box (2, 3), lower and upper corner, and outside another (pose: world-from-box, of both); at a height (low, high); and farther than thickness from plane, (a, b, c, d, thickness), of ax + by + cz = d. Metres. A cloud may be cropped again, by four of these in all.
+    """
+
 def uncertain(cloud: Cloud, noise: _Array | KinectNoise | StereoNoise | TofNoise | LidarNoise | None = None, *, shift: float = 0.0, turn: float = 0.0, max_speed: float = 0.0, age: float = 0.0) -> Cloud:
     """
     The same cloud, whose points may be elsewhere: for CertainDistance and others. noise: KinectNoise(), StereoNoise(...), TofNoise(...), LidarNoise(...), or an array of radii (m), one a point, float32, where the query asks. shift, turn: of the sensor's pose (m, rad). max_speed, age: of obstacles (m/s), of the cloud (s).
@@ -230,11 +235,11 @@ class Camera:
 
     @property
     def width(self) -> int:
-        """Of the images, pixels."""
+        """The width of the images, in pixels."""
 
     @property
     def height(self) -> int:
-        """Of the images, pixels."""
+        """The height of the images, in pixels."""
 
     @property
     def intrinsics(self) -> tuple[float, float, float, float] | None:
@@ -256,25 +261,25 @@ class PairDistance:
 
     @property
     def cloud(self) -> int | None:
-        """The point's number as in its cloud."""
+        """The number of the point's cloud."""
 
     @property
     def point(self) -> int | None:
-        """Its number in its cloud, as in the input."""
+        """The number of the point in its cloud."""
 
     @property
     def part(self) -> int | None:
-        """The number of the robot's part; None without a pair."""
+        """The number of the part."""
 
     @property
     def primitive(self) -> int | None:
         """
-        The part's nearest; of equally near ones the lowest. ~0u: the point is inside the part's solid.
+        The nearest primitive of the part; of equally near ones the lowest. ~0u: the point is inside the part's solid.
         """
 
     @property
     def distance(self) -> float:
-        """Metres; infinite without a pair."""
+        """Metres, as computed."""
 
     @property
     def link(self) -> str | None:
@@ -316,11 +321,11 @@ class MotionClearanceResult:
 
     @property
     def time(self) -> float:
-        """The asked time with the least upper,"""
+        """The asked time with the least upper."""
 
     @property
     def nearest(self) -> MinDistanceResult:
-        """and the answer of min_distance_per_part at that time."""
+        """The least distance at time."""
 
     @property
     def to(self) -> float:
@@ -328,7 +333,7 @@ class MotionClearanceResult:
 
     @property
     def part(self) -> int | None:
-        """and the part that does."""
+        """The part that keeps lower down."""
 
     @property
     def queries(self) -> int:
@@ -366,7 +371,7 @@ class MotionClearanceResult:
 
 class DropReason(enum.IntEnum):
     """
-    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then.
+    Why a record or pixel gave no point. too_close: something is there, nearer than the sensor can measure (REP 117); nothing is free then. cropped: it is no obstacle by its place.
     """
 
     none = 0
@@ -382,6 +387,8 @@ class DropReason(enum.IntEnum):
     masked = 5
 
     too_close = 6
+
+    cropped = 7
 
 class Hiding:
     """Which room behind its pixels an image hides, in metres of z."""
@@ -556,34 +563,38 @@ class UncertaintyShares:
 
     @property
     def noise(self) -> float:
-        """Of the point."""
+        """What the sensor's noise adds to the point's radius."""
 
     @property
     def calibration(self) -> float:
-        """Of the sensor's pose, metres."""
+        """What an inexact pose of the sensor adds to the point's radius."""
 
     @property
     def time(self) -> float:
-        """Of the age of the cloud, metres."""
+        """What an obstacle's motion since the point was seen adds to its radius."""
 
     @property
     def joints(self) -> float:
-        """Of the part."""
+        """What inexact joints add to the part's radius."""
 
     @property
     def delay(self) -> float:
-        """Of the time until the robot stops, metres."""
+        """What the part's motion while the answer is made adds to its radius."""
 
     @property
     def gap(self) -> float:
         """The part's gap and tolerance."""
 
     @property
+    def balls(self) -> float:
+        """The cloud's gap, if its points are balls that fill something."""
+
+    @property
     def rounding(self) -> float:
-        """Of float arithmetic, metres."""
+        """What arithmetic may have lost."""
 
     def sum(self) -> float:
-        """All of them together, metres."""
+        """All shares together."""
 
     def __repr__(self) -> str: ...
 
@@ -602,7 +613,7 @@ class UncertaintyShares:
 
 class CertainPair:
     """
-    The pair of a part that is least far apart for certain. distance is what was measured, lower the rest, at least 0. The pair need not be the nearest. Without a valid point the distance is infinite.
+    The pair of a part that is least far apart for certain. distance is what was measured, lower what is left of it. The pair need not be the nearest. Without a valid point the distance is infinite.
     """
 
     @property
@@ -641,11 +652,11 @@ class CertainPair:
 
     @property
     def lower(self) -> float:
-        """Metres: nothing is nearer; 0 if that is not certain."""
+        """Metres that certainly lie between the point and the part."""
 
     @property
     def shares(self) -> UncertaintyShares:
-        """What the uncertainty is made of, metres."""
+        """What is taken off the distance, by its cause."""
 
     @property
     def to_ball(self) -> float:
@@ -698,12 +709,14 @@ class CertainDistanceResult:
     @property
     def parts(self) -> NDArray[numpy.void]:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     @property
     def anywhere(self) -> int:
-        """So many points may be anywhere: if it is not 0, nothing is free."""
+        """
+        The number of points that may be anywhere: if it is not 0, nothing is free.
+        """
 
     @property
     def any_radius(self) -> bool:
@@ -711,7 +724,7 @@ class CertainDistanceResult:
 
     def of(self, part: int | str) -> CertainPair:
         """
-        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        The answer about one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
         """
 
     def __str__(self) -> str: ...
@@ -736,14 +749,14 @@ class PartRadius:
 
     @property
     def joints(self) -> float:
-        """Because joints are not where they say,"""
+        """How far it may be elsewhere because joints are not where they say."""
 
     @property
     def delay(self) -> float:
-        """and because it moves while the answer is made."""
+        """How far it may be elsewhere because it moves while the answer is made."""
 
     def sum(self) -> float:
-        """All of them together, metres."""
+        """Both together."""
 
     def __repr__(self) -> str: ...
 
@@ -767,13 +780,13 @@ class CertainDistance:
 
     def __init__(self, parts: ArrayLike = ()) -> None:
         """
-        parts: Of each part, in the order of the robot's parts; or how many parts there are.
+        parts: The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     @property
     def parts(self) -> NDArray[numpy.void]:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     def __repr__(self) -> str: ...
@@ -796,12 +809,14 @@ class PointDistances:
     @property
     def part(self) -> NDArray[numpy.uint32]:
         """
-        If which is set; of equally near ones the lowest. ~0u: none (for a primitive also: inside).
+        If which is set, the nearest part of each point, of equally near ones the lowest; ~0u: none.
         """
 
     @property
     def primitive(self) -> NDArray[numpy.uint32]:
-        """Which sphere or triangle of its part."""
+        """
+        If which is set, the nearest primitive of that part; ~0u: none, or the point is inside.
+        """
 
     @property
     def counts(self) -> PointCounts:
@@ -812,7 +827,7 @@ class PointDistances:
     @property
     def certain(self) -> DistanceCertainty:
         """
-        Of each distance: another part than the nearest may be nearer in truth.
+        What is certain of each distance: the nearest part may be another in truth.
         """
 
     def __str__(self) -> str: ...
@@ -840,7 +855,7 @@ class Distances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Also which part and primitive is nearest.
+        which: Whether to tell which part and primitive is nearest, too.
         """
 
     @property
@@ -849,7 +864,7 @@ class Distances:
 
     @property
     def which(self) -> bool:
-        """Also which part and primitive is nearest."""
+        """Whether to tell which part and primitive is nearest, too."""
 
     def __repr__(self) -> str: ...
 
@@ -872,7 +887,7 @@ class PartDistances:
 
     @property
     def points(self) -> int:
-        """How many points."""
+        """The number of points of all clouds."""
 
     @property
     def counts(self) -> PointCounts:
@@ -882,16 +897,16 @@ class PartDistances:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each distance, by its part."""
+        """What is certain of each distance, by its part."""
 
     @property
     def parts(self) -> int:
-        """
-        Of each part, in the order of the robot's parts; or how many parts there are.
-        """
+        """The number of parts."""
 
     def of(self, part: int | str) -> NDArray[numpy.float32]:
-        """Those of a part. Raises IndexError if there is no such part."""
+        """
+        The distances of a part to all points. Raises IndexError if there is no such part.
+        """
 
     def __str__(self) -> str: ...
 
@@ -1104,18 +1119,18 @@ class MinDistancePerPartResult:
     @property
     def all(self) -> MinDistanceResult:
         """
-        Of all together; of each part of each configuration, one after another.
+        The answer about all together; or about each part of each configuration, one after another.
         """
 
     @property
     def parts(self) -> NDArray[numpy.void]:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     def of(self, part: int | str) -> PartMinimum:
         """
-        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        The answer about one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
         """
 
     def __str__(self) -> str: ...
@@ -1158,7 +1173,7 @@ class SupportedDistance:
     @property
     def state(self) -> State:
         """
-        That of min_distance about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
+        What min_distance says about the confirmed points that were asked. possible: none is confirmed. no_data: there is no valid point.
         """
 
     @property
@@ -1191,11 +1206,11 @@ class SupportedDistance:
 
     @property
     def isolated(self) -> int:
-        """The number of nearer points that are not confirmed,"""
+        """The number of nearer points that are not confirmed."""
 
     @property
     def nearest_isolated(self) -> PairDistance:
-        """and the first of them."""
+        """The nearest of the points that are not confirmed."""
 
     @property
     def counts(self) -> PointCounts:
@@ -1231,18 +1246,18 @@ class MinDistanceSupported:
 
     def __init__(self, min_points: int = 3, radius: float = 0.02, most: int = 4096) -> None:
         """
-        min_points: A point is confirmed by this many points, itself among them,
-        radius: within this many metres.
+        min_points: How many points confirm one, itself among them.
+        radius: Metres within which points confirm one another.
         most: The search ends after this many of the nearest points, each asked once.
         """
 
     @property
     def min_points(self) -> int:
-        """A point is confirmed by this many points, itself among them,"""
+        """How many points confirm one, itself among them."""
 
     @property
     def radius(self) -> float:
-        """within this many metres."""
+        """Metres within which points confirm one another."""
 
     @property
     def most(self) -> int:
@@ -1336,13 +1351,13 @@ class MinDistancesPerPartResult:
     @property
     def all(self) -> NDArray[numpy.void]:
         """
-        Of all together; of each part of each configuration, one after another.
+        The answer about all together; or about each part of each configuration, one after another.
         """
 
     @property
     def parts(self) -> int:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     def size(self) -> int:
@@ -1350,7 +1365,7 @@ class MinDistancesPerPartResult:
 
     def of(self, c: int) -> NDArray[numpy.void]:
         """
-        Those of a configuration. Raises IndexError if there is no such configuration.
+        The results of a configuration's parts. Raises IndexError if there is no such configuration.
         """
 
     def __str__(self) -> str: ...
@@ -1431,7 +1446,7 @@ class NearestKResult:
 
     @property
     def per_part(self) -> int:
-        """How many of each part there are at most."""
+        """The number of pairs in each part's list."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
@@ -1445,10 +1460,10 @@ class NearestKResult:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each pair's distance, by its part."""
+        """What is certain of each pair's distance, by its part."""
 
     def of(self, part: int | str) -> NDArray[numpy.void]:
-        """Those of a part. Raises IndexError if there is no such part."""
+        """The pairs of a part. Raises IndexError if there is no such part."""
 
     def __str__(self) -> str: ...
 
@@ -1473,11 +1488,13 @@ class PartWitnesses:
     """
 
     def __init__(self, minima: NDArray[numpy.void]) -> None:
-        """minima: As min_distance_per_part gives them."""
+        """
+        minima: Every part's least distance, as min_distance_per_part gives it.
+        """
 
     @property
     def minima(self) -> NDArray[numpy.void]:
-        """As min_distance_per_part gives them."""
+        """Every part's least distance, as min_distance_per_part gives it."""
 
     def __repr__(self) -> str: ...
 
@@ -1498,11 +1515,11 @@ class SelfFilterCounts:
 
     @property
     def own(self) -> int:
-        """Of the valid points."""
+        """How many valid points are certainly the robot's."""
 
     @property
     def uncertain(self) -> int:
-        """How many are perhaps the robot's."""
+        """How many valid points are perhaps the robot's."""
 
     def __repr__(self) -> str: ...
 
@@ -1526,7 +1543,7 @@ class SelfFilterResult:
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """One per point of all clouds, in their order."""
+        """Whose each point is, in the order of the clouds and their points."""
 
     @property
     def offsets(self) -> NDArray[numpy.uint64]:
@@ -1591,7 +1608,7 @@ class SignedDistances:
     def __init__(self, d_max: float = float('inf'), which: bool = False) -> None:
         """
         d_max: Metres; farther points are +inf, and cost next to nothing.
-        which: Also which part and triangle is nearest.
+        which: Whether to tell which part and triangle is nearest, too.
         """
 
     @property
@@ -1600,7 +1617,7 @@ class SignedDistances:
 
     @property
     def which(self) -> bool:
-        """Also which part and triangle is nearest."""
+        """Whether to tell which part and triangle is nearest, too."""
 
     def __repr__(self) -> str: ...
 
@@ -1651,18 +1668,20 @@ class UnseenPart:
 
     @property
     def lower(self) -> float:
-        """At least so far away is all that no camera sees and some camera hides."""
+        """
+        Room that some camera hides and no camera sees is at least so far away.
+        """
 
     @property
     def out_of_view(self) -> float:
         """
-        Which share of the ball around the part no camera shows. Nothing is said about that. NaN if a ray image may show the rest.
+        The share, 0 to 1, of the ball around the part that no camera shows; nothing is said about it. NaN if a ray image may show the rest.
         """
 
     @property
     def to_edge(self) -> float:
         """
-        If edges are asked for: the ball around the part is at least so far from all that no image shows; 0 if some of it is there, NaN of ray images alone. Metres.
+        If edges are asked for: at least so many metres lie between the ball around the part and all that no image shows. 0: some of the ball is not shown. NaN: there are ray images alone.
         """
 
     @property
@@ -1692,24 +1711,24 @@ class UnseenResult:
     @property
     def all(self) -> MinDistanceResult:
         """
-        Of all together; of each part of each configuration, one after another.
+        The answer about all together; or about each part of each configuration, one after another.
         """
 
     @property
     def parts(self) -> NDArray[numpy.void]:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     @property
     def own_shadow(self) -> MinDistanceResult:
         """
-        What pixels of the robot's own points (masked) hide, of all cameras together.
+        The least distance to what pixels of the robot's own points (masked) hide from all cameras together.
         """
 
     def of(self, part: int | str) -> UnseenPart:
         """
-        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        The answer about one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
         """
 
     def __str__(self) -> str: ...
@@ -1731,16 +1750,16 @@ class UnseenResult:
 
 class Unseen:
     """
-    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked ones, or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, not one label per pixel, and radii as in_collision.
+    How far is the robot from the room that depth images hide? Clouds are depth_image or ray_image, or masked or cropped ones (what is cropped hides as before), or uncertain ones of those: then hidden is what may be hidden, so that the state is not unknown but possible. Refused: depths that are no range, a ray image without half_pixel, not one label per pixel, and radii as in_collision.
     """
 
     def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
         """
         room: Where hidden room begins and ends.
-        half_pixel: For ray images: half_pixel_of their table.
-        labels: Of all pixels of all clouds, as self_filter gives them, or none.
-        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
-        edges: Also how far every part is from the edge of the view: to_edge.
+        half_pixel: What half_pixel_of says of a ray image's table; 0 without ray images.
+        labels: Whose each pixel of all clouds is, as self_filter gives it; or none.
+        places: Whether to tell of every part, as of the robot, at, nearest and normal.
+        edges: Whether to tell to_edge: how far every part is from the edge of the view.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
@@ -1750,21 +1769,23 @@ class Unseen:
 
     @property
     def half_pixel(self) -> float:
-        """For ray images: half_pixel_of their table."""
+        """What half_pixel_of says of a ray image's table; 0 without ray images."""
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """Of all pixels of all clouds, as self_filter gives them, or none."""
+        """Whose each pixel of all clouds is, as self_filter gives it; or none."""
 
     @property
     def places(self) -> bool:
         """
-        Also where every part is nearest: at, nearest and normal, as the robot always has.
+        Whether to tell of every part, as of the robot, at, nearest and normal.
         """
 
     @property
     def edges(self) -> bool:
-        """Also how far every part is from the edge of the view: to_edge."""
+        """
+        Whether to tell to_edge: how far every part is from the edge of the view.
+        """
 
     @property
     def radii(self) -> tuple[float, ...]:
@@ -1785,11 +1806,11 @@ class WithinResult:
 
     @property
     def offsets(self) -> NDArray[numpy.uint64]:
-        """Where each part's begin, and the end of all."""
+        """Where each part's pairs begin, and the number of all."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
-        """Distances as computed, in metres."""
+        """The pairs, with distances as computed, in metres."""
 
     @property
     def counts(self) -> PointCounts:
@@ -1799,7 +1820,7 @@ class WithinResult:
 
     @property
     def certain(self) -> DistanceCertainty:
-        """Of each pair's distance, by its part."""
+        """What is certain of each pair's distance, by its part."""
 
     def __str__(self) -> str: ...
 
@@ -1845,29 +1866,31 @@ class Zone:
 
     @property
     def points(self) -> int:
-        """How many points."""
+        """How many points are in the zone."""
 
     @property
     def nearest(self) -> float:
         """
-        The least distance of its points, less their radii, as computed. Metres.
+        The least distance of the zone's points, less their radii, as computed. Metres.
         """
 
     @property
     def nearest_cloud(self) -> int | None:
-        """The point at that distance; of equally near ones the lowest."""
+        """The cloud of the nearest point."""
 
     @property
     def nearest_point(self) -> int | None:
-        """That point's number in its cloud."""
+        """
+        The nearest point's number in that cloud; of equally near ones the lowest.
+        """
 
     @property
     def first_cloud(self) -> int | None:
-        """The lowest of its points."""
+        """The lowest cloud that has a point in the zone."""
 
     @property
     def first_point(self) -> int | None:
-        """That point's number in its cloud."""
+        """The lowest number in that cloud of a point in the zone."""
 
     def __repr__(self) -> str: ...
 
@@ -1889,11 +1912,11 @@ class ZonesResult:
 
     @property
     def per_part(self) -> int:
-        """How many of each part there are at most."""
+        """The number of zones of each part."""
 
     @property
     def min_points(self) -> int:
-        """So many points make a zone count."""
+        """A zone with fewer points counts as empty (innermost)."""
 
     @property
     def zones(self) -> NDArray[numpy.void]:
@@ -1941,19 +1964,21 @@ class Zones:
 
     def __init__(self, thresholds: float | ArrayLike, each_part: bool = False, min_points: int = 1, radii: float | ArrayLike = ()) -> None:
         """
-        thresholds: Metres, in ascending order: the same for every part,
-        each_part: or, if this is set, those of each part in turn, equally many.
+        thresholds: Metres, in ascending order: the same for every part, unless each_part is set.
+        each_part: thresholds are those of each part in turn, equally many.
         min_points: A zone with fewer counts as empty (innermost); its points are still reported.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
     @property
     def thresholds(self) -> tuple[float, ...]:
-        """Metres, in ascending order: the same for every part,"""
+        """
+        Metres, in ascending order: the same for every part, unless each_part is set.
+        """
 
     @property
     def each_part(self) -> bool:
-        """or, if this is set, those of each part in turn, equally many."""
+        """thresholds are those of each part in turn, equally many."""
 
     @property
     def min_points(self) -> int:
@@ -2095,7 +2120,7 @@ class PointCounts:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Counts by drop_reason; [none] stays 0."""
+        """How many points were dropped, by drop_reason; [none] stays 0."""
 
     def __str__(self) -> str: ...
 
@@ -2137,31 +2162,33 @@ class MinDistanceResult:
 
     @property
     def cloud(self) -> int | None:
-        """Which cloud of the call,"""
+        """The number of the nearest point's cloud."""
 
     @property
     def point(self) -> int | None:
-        """which of its points (index as in the input),"""
+        """The number of the nearest point in its cloud."""
 
     @property
     def part(self) -> int | None:
-        """which part,"""
+        """The number of the nearest part."""
 
     @property
     def primitive(self) -> int | None:
-        """which of its primitives attains it; of equally near ones the lowest."""
+        """
+        The number of the part's nearest primitive; of equally near ones the lowest.
+        """
 
     @property
     def at(self) -> tuple[float, float, float]:
-        """The point, in world coordinates,"""
+        """The nearest point, in world coordinates."""
 
     @property
     def nearest(self) -> tuple[float, float, float]:
-        """the nearest point of the primitive,"""
+        """The primitive's point that is nearest to it, in world coordinates."""
 
     @property
     def normal(self) -> tuple[float, float, float]:
-        """and the unit vector from robot to point; (0,0,0) if there is none."""
+        """The unit vector from robot to point; (0,0,0) if there is none."""
 
     @property
     def seen(self) -> int:
@@ -2173,7 +2200,7 @@ class MinDistanceResult:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Counts by drop_reason; [none] stays 0."""
+        """How many points were dropped, by drop_reason; [none] stays 0."""
 
     @property
     def link(self) -> str | None:
@@ -2202,28 +2229,30 @@ class SeenAndUnseenResult:
     @property
     def all(self) -> MinDistanceResult:
         """
-        Of all together; of each part of each configuration, one after another.
+        The answer about all together; or about each part of each configuration, one after another.
         """
 
     @property
     def parts(self) -> NDArray[numpy.void]:
         """
-        Of each part, in the order of the robot's parts; or how many parts there are.
+        The answer about each part, in the order of the robot's parts; or how many parts there are.
         """
 
     @property
     def own_shadow(self) -> MinDistanceResult:
         """
-        What pixels of the robot's own points (masked) hide, of all cameras together.
+        The least distance to what pixels of the robot's own points (masked) hide from all cameras together.
         """
 
     @property
     def seen(self) -> MinDistanceResult:
-        """Of all clouds. Pixels labelled own are dropped as masked."""
+        """
+        The least distance to what cameras see. Pixels labelled own are dropped as masked.
+        """
 
     def of(self, part: int | str) -> UnseenPart:
         """
-        That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
+        The answer about one part, by its number or its link's name. Raises IndexError or ValueError if there is none.
         """
 
     def __str__(self) -> str: ...
@@ -2251,10 +2280,10 @@ class SeenAndUnseen:
     def __init__(self, room: Hiding = Hiding(nearest=0.10000000149011612, farthest=10.0, infinite_is_free=False), half_pixel: float = 0.0, labels: ArrayLike = (), places: bool = False, edges: bool = False, radii: float | ArrayLike = ()) -> None:
         """
         room: Where hidden room begins and ends.
-        half_pixel: For ray images: half_pixel_of their table.
-        labels: Of all pixels of all clouds, as self_filter gives them, or none.
-        places: Also where every part is nearest: at, nearest and normal, as the robot always has.
-        edges: Also how far every part is from the edge of the view: to_edge.
+        half_pixel: What half_pixel_of says of a ray image's table; 0 without ray images.
+        labels: Whose each pixel of all clouds is, as self_filter gives it; or none.
+        places: Whether to tell of every part, as of the robot, at, nearest and normal.
+        edges: Whether to tell to_edge: how far every part is from the edge of the view.
         radii: By how much parts may be elsewhere, in metres: all alike, or each.
         """
 
@@ -2264,21 +2293,23 @@ class SeenAndUnseen:
 
     @property
     def half_pixel(self) -> float:
-        """For ray images: half_pixel_of their table."""
+        """What half_pixel_of says of a ray image's table; 0 without ray images."""
 
     @property
     def labels(self) -> NDArray[numpy.uint8]:
-        """Of all pixels of all clouds, as self_filter gives them, or none."""
+        """Whose each pixel of all clouds is, as self_filter gives it; or none."""
 
     @property
     def places(self) -> bool:
         """
-        Also where every part is nearest: at, nearest and normal, as the robot always has.
+        Whether to tell of every part, as of the robot, at, nearest and normal.
         """
 
     @property
     def edges(self) -> bool:
-        """Also how far every part is from the edge of the view: to_edge."""
+        """
+        Whether to tell to_edge: how far every part is from the edge of the view.
+        """
 
     @property
     def radii(self) -> tuple[float, ...]:
@@ -2366,7 +2397,7 @@ class Query(Generic[Answer]):
 
     def enqueue(self, points: _Array | Cloud | None = None, joints: _Array | Mapping[str, float] | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, cloud_pose: ArrayLike | None = None, depth: _Array | None = None, intrinsics: ArrayLike | None = None, rays: _Array | None = None, depth_scale: float | None = None, camera_pose: ArrayLike | None = None, clouds: Iterable[_Array | Cloud] | None = None, out: object | None = None, capacity: int | None = None, stream: object | None = None, question: object | None = None, ignore_limits: bool = False, rest: bool = False) -> DeviceAnswer:
         """
-        The same on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
+        Asks on a device, without waiting: clouds are arrays there, and so is the answer, which work in stream waits for. stream: an integer (-1: you see to the order; 1, 2, or a pointer), or one of torch or CuPy; None: the legacy default one. out: arrays to write, by name, such as the last answer. capacity: of pairs. Raises ValueError as a call.
         """
 
     @property

@@ -53,7 +53,7 @@ NB_MODULE(_core, m) {
             return all;
           },
           nb::sig("def to_dict(self) -> dict[str, typing.Any]"),
-          "Of what it is made: errors of computing, and by how much parts may be nearer than their primitives, metres.")
+          "What it is made of: errors of computing, and by how much parts may be nearer than their primitives, metres.")
       .def("__getstate__",
            [](const clearance::distance_certainty& c) {
              return nb::make_tuple(c.error.here, c.error.per_metre, c.slop,

@@ -262,7 +262,8 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
           return to_python(its.value.parts[k], self, its.about);
         },
         nb::arg("part").none(), nb::sig(signature.c_str()),
-        "That of one part, by its number or its link's name. Raises IndexError or ValueError if there is none.");
+        "The answer about one part, by its number or its link's name. Raises IndexError or ValueError if there is "
+        "none.");
   }
   if constexpr (requires(const R& r, const part_names& names) { sentence_of(r, names); })
     bound.def("__str__", [](const answered<R>& self) { return sentence_of(self.value, self.about.names); });
