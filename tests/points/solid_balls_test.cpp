@@ -4,6 +4,7 @@
 #include "questions/uncertain_scenes.hpp"
 
 #include <clearance/make_model.hpp>
+#include <clearance/questions/certain_distance.hpp>
 #include <clearance/volume/aabb.hpp>
 #include <clearance/volume/sphere.hpp>
 
@@ -14,6 +15,19 @@ using clearance::balls_of, clearance::host, clearance::min_distance, clearance::
     clearance::placed, clearance::state;
 
 namespace {
+
+/// A user's own full balls, which cannot be asked for larger ones.
+struct own_balls {
+  using can = clearance::can<clearance::sources::capsules, clearance::sources::rounded>;
+  static constexpr bool vague = false, balls = true;
+
+  double gap;
+
+  std::size_t size() const { return 1; }
+  clearance::sample operator[](std::size_t) const { return {{3, 0, 0}, clearance::drop_reason::none}; }
+  clearance::capsule around(std::size_t, vec3 p) const { return {p, {0, 0, 0}, 0.25f}; }
+  clearance::position_error rounding() const { return {0, 0, gap}; }
+};
 
 template <class V, class P>
 void all_scenes(std::size_t most_points) {
@@ -161,6 +175,9 @@ TEST_CASE("Balls that cannot be are refused, and those that may be anywhere are 
   auto unlike = balls_of(at, std::span(radii));
   unlike.source.count = 1;
   CHECK_THROWS_WITH(ask(host{}, part, shifted(0, 0, 0), unlike, min_distance{}), Contains("2 balls, but 1 radii"));
+  CHECK(ask(host{}, part, shifted(0, 0, 0), own_balls{0}, clearance::certain_distance{}).lower > 2.2f);
+  CHECK_THROWS_WITH(ask(host{}, part, shifted(0, 0, 0), own_balls{0.1}, clearance::certain_distance{}),
+                    Contains("a cloud of full balls has a gap, and its source has no filled()"));
   const auto nothing = balls_of(at, std::span(radii), double(infinity));
   CHECK(ask(host{}, part, shifted(0, 0, 0), nothing, min_distance{}).lower == 0);
 }

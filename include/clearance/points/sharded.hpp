@@ -29,6 +29,7 @@ class sharded {
   explicit sharded(const std::vector<S>& pieces) : sharded(checked(pieces), std::make_index_sequence<most>()) {}
 
   CLEARANCE_HD std::size_t size() const { return first_[most]; }
+
   /// f(piece, j) of the piece that has point i as its j-th.
   template <class F>
   CLEARANCE_HD auto with_piece_of(std::size_t i, const F& f) const {
@@ -36,6 +37,7 @@ class sharded {
     while (i >= first_[k + 1]) ++k;
     return f(piece_[k], i - first_[k]);
   }
+
   CLEARANCE_HD sample operator[](std::size_t i) const {
     return with_piece_of(i, [](const S& piece, std::size_t j) { return piece[j]; });
   }

@@ -193,7 +193,9 @@ struct as_filled {
     } else if constexpr (sharded_source<S>) {
       return s.with_pieces(*this);
     } else {
-      if (rounding_of(s).gap > 0) detail::refuse_source("balls that have a gap have no filled()");
+      if (rounding_of(s).gap > 0)
+        detail::refuse_source(
+            "a cloud of full balls has a gap, and its source has no filled(), which gives the balls larger by it");
       return s;
     }
   }

@@ -35,7 +35,8 @@ struct drop_tally {
 
   CLEARANCE_HD void add_to(drop_counts& all) const {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800  // older devices have no such instruction
-    const unsigned together = __activemask();       // before the loop, in which a lane may be ahead
+    // Once, before the loop, in which a lane may be ahead.
+    const unsigned together = __activemask();
     const bool adds = (threadIdx.x & 31) == unsigned(__ffs(int(together)) - 1);
     for (int r = 1; r < drop_reasons; ++r) {
       const unsigned sum = __reduce_add_sync(together, dropped[r]);
