@@ -19,14 +19,18 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 # CLEARANCE_HAS_CUDA: build our CUDA programs. The default is one architecture, because "native" is an error on a
-# machine without a GPU, as in CI.
+# machine without a GPU, as in CI; where programs for the GPU are only checked, as far as PTX.
 set(CLEARANCE_HAS_CUDA OFF)
 if(NOT CLEARANCE_CUDA STREQUAL "OFF")
   include(CheckLanguage)
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
     if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-      set(CMAKE_CUDA_ARCHITECTURES 90 CACHE STRING "GPU architectures of our own programs")
+      set(architectures 90)
+      if(CLEARANCE_DEVICE_PROGRAMS STREQUAL "CHECK")
+        set(architectures 90-virtual)
+      endif()
+      set(CMAKE_CUDA_ARCHITECTURES ${architectures} CACHE STRING "GPU architectures of our own programs")
     endif()
     enable_language(CUDA)
     set(CLEARANCE_HAS_CUDA ON)
@@ -74,6 +78,19 @@ endif()
 macro(clearance_compile_faster language)
   string(REPLACE "-O3" "-O1" CMAKE_${language}_FLAGS_RELEASE "${CMAKE_${language}_FLAGS_RELEASE}")
 endmacro()
+
+# clearance_compile_once(target): walks for processors with wide vectors alone, where this one has them, not also for those
+# without (with_vectors). That takes half the time of most, a fifth of some.
+set(clearance_wide_vectors)
+if(EXISTS /proc/cpuinfo AND NOT CMAKE_CROSSCOMPILING)
+  file(STRINGS /proc/cpuinfo flags REGEX "^flags.* avx2( |$)" LIMIT_COUNT 1)
+  if("${flags} " MATCHES " fma ")
+    set(clearance_wide_vectors -mavx2 -mfma -DEIGEN_MAX_ALIGN_BYTES=16)  # Eigen's usual alignment, as in what is linked
+  endif()
+endif()
+function(clearance_compile_once target)
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:${clearance_wide_vectors}>)
+endfunction()
 
 # The GPU check, linked into device programs that CTest runs: exit code 77 ("skipped") without a GPU.
 if(CLEARANCE_HAS_CUDA AND CLEARANCE_BUILD_TESTS)
