@@ -130,6 +130,7 @@ TESTS = {
     "io/robot.hpp": ["io/robot_gltf"],
     "io/sealed_file.hpp": ["io/ist", "io/fields_file"],
     "io/sentence.hpp": ["io/cloud", "io/robot_damage", "io/mesh"],
+    "io/srdf.hpp": ["io/srdf"],
     "io/stamped_joints.hpp": ["io/part_radii"],
     "io/robot_link.hpp": ["io/robot"],
     "io/text_file.hpp": ["io/text_file"],
