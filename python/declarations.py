@@ -20,7 +20,7 @@ OWN = {"vec3", "position", "distance_certainty"}
 # Options that no question has: `uncertain` takes them.
 OF_CLOUDS = {"kinect_noise", "stereo_noise", "tof_noise", "lidar_noise"}
 # What functions return, and what counts of dropped points are of.
-OF_FUNCTIONS = {"motion_clearance_result", "drop_reason"}
+OF_FUNCTIONS = {"motion_clearance_result", "drop_reason", "self_distance_result", "self_clearance"}
 
 # What a member is that a headline or its neighbour explains in C++, for Python's help() of it alone.
 MEANS = {
@@ -45,6 +45,9 @@ MEANS = {
     "min_points": "So many points make a zone count.", "k": "How many of each part.",
     "queries": "How many times were asked.", "to": "Where that piece ends.",
     "first_not_free": "The first of each trajectory that is not free, counted from its beginning.",
+    "a": "The number of one part; None without a pair.", "b": "The number of the other, higher one.",
+    "sphere_a": "Which sphere of part a, as it was given.", "sphere_b": "Which sphere of part b.",
+    "at_b": "The place on sphere b that is nearest to sphere a, in the world, metres.",
     "sum": "All of them together, metres.", "size": "How many configurations there are.",
 }
 
@@ -178,6 +181,12 @@ def out_arrays(out, all_of, to="to"):
     return arrays
 
 
+def take_from_base(d, all_of):
+    if d.base in all_of:
+        take_from_base(all_of[d.base], all_of)
+        d.members, d.base = all_of[d.base].members + d.members, None
+
+
 def reachable(all_of):
     wanted = [d for d in all_of.values() if d.question or d.name in OF_CLOUDS | OF_FUNCTIONS]
     chosen = {}
@@ -188,8 +197,7 @@ def reachable(all_of):
         if d.name in chosen or d.name in OWN:
             continue
         chosen[d.name] = d
-        if d.base in all_of:  # whose own base, if it had one, would be left out
-            d.members, d.base = all_of[d.base].members + d.members, None
+        take_from_base(d, all_of)
         for _, kind, _ in d.members:
             wanted += [all_of[w] for w in words(kind) if w in all_of]
             if d.question and kind in all_of and all_of[kind].kind == "struct" and kind not in OWN:

@@ -25,13 +25,13 @@ struct pair_clearance {
 struct self_clearance : pair_clearance {
   clearance::state state = clearance::state::no_data;
   real upper = infinity;
-  position at_a = {0, 0, 0}, at_b = {0, 0, 0};  ///< The nearest places of both spheres,
-  vec3 normal = {0, 0, 0};                      ///< and the unit vector from b to a.
+  position at_a = {0, 0, 0}, at_b = {0, 0, 0};  ///< The nearest places of both spheres, in the world, metres.
+  vec3 normal = {0, 0, 0};                      ///< The unit vector from b to a.
 };
 
 /// Also of each pair: the pairs of part 0 first, then those of part 1 with higher ones, and so on.
 struct self_distance_result : self_clearance {
-  std::vector<pair_clearance> pairs;
+  std::vector<pair_clearance> pairs;  ///< Of each pair that can meet.
 };
 
 namespace detail {

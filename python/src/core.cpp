@@ -4,6 +4,7 @@
 #include "query.hpp"
 #include "questions.hpp"
 #include "robot.hpp"
+#include "self_distance.hpp"
 #include "sensor_messages.hpp"
 #include "separation.hpp"
 
@@ -84,5 +85,6 @@ NB_MODULE(_core, m) {
   });
   bind_query(m);
   bind_separation(m);
+  bind_self_distance(m);
   bind_gradients(m);
 }

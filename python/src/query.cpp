@@ -67,21 +67,14 @@ struct query_object {
                        nb::handle camera_pose, nb::handle clouds, joint_reading how, bool stays) const {
     asked_frame made;
     auto& places = made.places;
-    Eigen::Vector3d middle;
+    auto [at, shape] = robot_placed(*robot, joints, poses, base, how);
+    places = std::move(at);
+    made.shape = std::move(shape);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     if (!poses.is_none()) {
-      if (!joints.is_none() || !base.is_none() || how.rest)
-        throw std::invalid_argument("clearance: poses are given, so joints, base and rest cannot be");
-      places = poses_of(poses, "poses", &made.shape);
-      if (!made.shape.empty() && made.shape.back() == robot->parts())
-        made.shape.pop_back();
-      else
-        made.shape.clear();
-      middle = places.empty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(places[0].translation());
+      if (!places.empty()) middle = places[0].translation();
     } else {
       middle = pose_of(base, "base").translation();
-      auto [at, shape] = robot_at(*robot, joints, base, how);
-      places = std::move(at);
-      made.shape = std::move(shape);
       const std::size_t count = robot->parts() == 0 ? 1 : places.size() / robot->parts();
       if (count != 1 && !query->about_many())
         throw std::invalid_argument("clearance: joints gives " + std::to_string(count) + " configurations, so " +

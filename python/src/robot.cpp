@@ -94,12 +94,6 @@ void make(robot_model& made, const std::vector<io::body_source>& sources, const 
   build(made);
 }
 
-/// A description itself, and no file's name?
-bool is_text(const std::string& urdf) {
-  const std::size_t first = urdf.find_first_not_of(" \t\r\n");
-  return first != urdf.npos && urdf[first] == '<';
-}
-
 /// "y" or "z"; none for None.
 std::optional<io::gltf_axis> gltf_axis_of(const std::optional<std::string>& up) {
   if (up && *up != "y" && *up != "z")
@@ -494,6 +488,11 @@ Eigen::Isometry3d pose_of(nb::handle given, const char* argument) {
   return poses[0];
 }
 
+bool is_text(const std::string& given) {
+  const std::size_t first = given.find_first_not_of(" \t\r\n");
+  return first != given.npos && given[first] == '<';
+}
+
 std::size_t joint_rows::size() const {
   return std::accumulate(shape.begin(), shape.end(), std::size_t(1), std::multiplies<>());
 }
@@ -535,6 +534,20 @@ placed_robot robot_at(const robot_model& robot, nb::handle joints, nb::handle ba
                                 ", because this robot was not read from a URDF file; rest=True puts all parts where "
                                 "the base is");
   return {std::vector(robot.parts(), to), {}};
+}
+
+placed_robot robot_placed(const robot_model& robot, nb::handle joints, nb::handle poses, nb::handle base,
+                          joint_reading how) {
+  if (poses.is_none()) return robot_at(robot, joints, base, how);
+  if (!joints.is_none() || !base.is_none() || how.rest)
+    throw std::invalid_argument("clearance: poses are given, so joints, base and rest cannot be");
+  placed_robot made;
+  made.poses = poses_of(poses, "poses", &made.shape);
+  if (!made.shape.empty() && made.shape.back() == robot.parts())
+    made.shape.pop_back();
+  else
+    made.shape.clear();
+  return made;
 }
 
 io::digest digest_of(std::span<const Eigen::Isometry3d> poses) {

@@ -46,6 +46,9 @@ struct robot_model {
 /// Builds the trees of its bodies, and takes their names. Without the interpreter.
 void build(robot_model& made);
 
+/// A description itself, and no file's name?
+bool is_text(const std::string& given);
+
 /// The tree of a robot with joints. Throws std::invalid_argument for one without.
 inline const clearance::io::kinematic_tree& joints_of(const robot_model& robot) {
   return robot.described().kinematics();
@@ -105,6 +108,9 @@ struct placed_robot {
   std::vector<std::size_t> shape;  ///< Of the configurations.
 };
 placed_robot robot_at(const robot_model& robot, nb::handle joints, nb::handle base, joint_reading how);
+/// The same, or by poses of the parts, if they are given.
+placed_robot robot_placed(const robot_model& robot, nb::handle joints, nb::handle poses, nb::handle base,
+                          joint_reading how);
 
 /// A fingerprint of poses, to the bit.
 clearance::io::digest digest_of(std::span<const Eigen::Isometry3d> poses);

@@ -76,6 +76,12 @@ std::string sentence_of(const min_distance_result& r, const part_names& names) {
   return to_string(r.state) + std::string(text) + pair_of(r.part, r.cloud, r.point, names);
 }
 
+std::string sentence_of(const self_clearance& r, const part_names& names) {
+  if (r.a == none) return to_string(r.state) + std::string(": no pair of parts can meet");
+  return to_string(r.state) + (": " + metres(r.distance) + " m") + bracket(r.lower, r.upper) + ", " +
+         part_name(r.a, names) + " to " + part_name(r.b, names);
+}
+
 std::string sentence_of(const min_distance_per_part_result& r, const part_names& names) {
   return sentence_of(r.all, names) + "; of " + counted(r.parts.size(), "part");
 }

@@ -16,6 +16,7 @@
 #include <clearance/questions/within.hpp>
 #include <clearance/questions/zones.hpp>
 #include <clearance/seen_and_unseen.hpp>
+#include <clearance/self_distance.hpp>
 
 #include <memory>
 #include <string>
@@ -41,4 +42,5 @@ std::string sentence_of(const clearance::nearest_k_result& r, const part_names& 
 std::string sentence_of(const clearance::point_distances& r, const part_names& names);
 std::string sentence_of(const clearance::part_distances& r, const part_names& names);
 std::string sentence_of(const clearance::self_filter_result& r, const part_names& names);
+std::string sentence_of(const clearance::self_clearance& r, const part_names& names);
 std::string sentence_of(const clearance::point_counts& r, const part_names& names);

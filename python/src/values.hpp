@@ -250,6 +250,15 @@ nb::class_<answered<R>> bind_result(nb::module_& m) {
           return nb::cast((*self.about.names)[part]);
         },
         "The name of that part, or None.");
+  if constexpr (requires(const R& r) { r.a + r.b; })
+    bound.def_prop_ro(
+        "links",
+        [](const answered<R>& self) -> nb::object {
+          const auto& names = self.about.names;
+          if (!names || self.value.a >= names->size() || self.value.b >= names->size()) return nb::none();
+          return nb::make_tuple((*names)[self.value.a], (*names)[self.value.b]);
+        },
+        nb::sig("def links(self) -> tuple[str, str] | None"), "The names of both parts, or None.");
   if constexpr (requires(const R& r) { typename decltype(r.parts)::value_type; }) {
     static const std::string signature =
         std::string("def of(self, part: int | str) -> ") + declared<typename decltype(R::parts)::value_type>::name;
