@@ -83,11 +83,13 @@ endmacro()
 # without (with_vectors). That takes half the time of most, a fifth of some.
 option(CLEARANCE_THIS_PROCESSOR "Compile our programs for processors like this one alone, in half the time" OFF)
 set(clearance_wide_vectors)
-if(CLEARANCE_THIS_PROCESSOR AND EXISTS /proc/cpuinfo AND NOT CMAKE_CROSSCOMPILING)
+if(CLEARANCE_THIS_PROCESSOR AND EXISTS /proc/cpuinfo AND NOT CMAKE_CROSSCOMPILING
+   AND NOT CMAKE_CXX_FLAGS MATCHES "-m(avx2|arch)")  # which also libraries have
   file(STRINGS /proc/cpuinfo flags REGEX "^flags.* avx2( |$)" LIMIT_COUNT 1)
   if("${flags} " MATCHES " fma ")
-    # Spheres are packed as without these flags, because no sum is contracted; Eigen's alignment is that of what is linked.
-    set(clearance_wide_vectors -mavx2 -mfma -ffp-contract=off -DEIGEN_MAX_ALIGN_BYTES=16)
+    # Spheres are packed as without these flags, because no sum is contracted. Eigen aligns and allocates as in what is
+    # linked (same_eigen.hpp); so it must not multiply large matrices, whose blocks it would take to be aligned for AVX.
+    set(clearance_wide_vectors -mavx2 -mfma -ffp-contract=off -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=1)
   endif()
 endif()
 function(clearance_compile_once target)

@@ -111,8 +111,9 @@ int main(int argc, char** argv) {
   hold_streams();
 #if defined(__AVX2__) && defined(__FMA__)
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-    return fail("this program was built for processors with AVX2 and FMA, and this one lacks them: build it here, with "
-                "-DCLEARANCE_THIS_PROCESSOR=OFF");
+    return fail(
+        "this program was built for processors with AVX2 and FMA, and this one lacks them: build it here, with "
+        "-DCLEARANCE_THIS_PROCESSOR=OFF");
 #endif
   CLI::App app("How far is this robot from everything its depth sensor sees?", "clearance");
   const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' + std::to_string(CLEARANCE_VERSION_MINOR) +
