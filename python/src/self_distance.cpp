@@ -246,8 +246,6 @@ void bind_self_distance(nb::module_& m) {
       .def("__call__", &self_query_object::operator(), nb::arg("joints").none() = nb::none(), nb::kw_only(),
            nb::arg("poses").none() = nb::none(), nb::arg("base").none() = nb::none(), nb::arg("ignore_limits") = false,
            nb::arg("rest") = false,
-           nb::sig("def __call__(self, joints: object | None = None, *, poses: object | None = None, base: object | "
-                   "None = None, ignore_limits: bool = False, rest: bool = False) -> SelfDistanceResult"),
            "The least distance of all pairs, and each pair's. Where the robot is: as for Query.")
       .def("many", &self_query_object::many, nb::arg("joints").none() = nb::none(), nb::kw_only(),
            nb::arg("poses").none() = nb::none(), nb::arg("base").none() = nb::none(), nb::arg("ignore_limits") = false,
