@@ -29,9 +29,9 @@ struct self_clearance : pair_clearance {
   vec3 normal = {0, 0, 0};                      ///< The unit vector from b to a.
 };
 
-/// Also of each pair: the pairs of part 0 first, then those of part 1 with higher ones, and so on.
+/// The least distance of all pairs, and each pair's: first those of part 0, then those of part 1 with higher ones.
 struct self_distance_result : self_clearance {
-  std::vector<pair_clearance> pairs;  ///< Of each pair that can meet.
+  std::vector<pair_clearance> pairs;  ///< Each pair that can meet.
 };
 
 namespace detail {
