@@ -2323,6 +2323,202 @@ class SeenAndUnseen:
 
     def __hash__(self) -> int: ...
 
+class PairClearance:
+    """
+    The least distance of two parts, a < b, and which spheres attain it, numbered as they were given. Metres; below 0 if they overlap. The solids are at least lower apart.
+    """
+
+    @property
+    def a(self) -> int | None:
+        """The number of one part; None without a pair."""
+
+    @property
+    def b(self) -> int | None:
+        """The number of the other, higher one."""
+
+    @property
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
+
+    @property
+    def lower(self) -> float:
+        """Metres: nothing is nearer; 0 if that is not certain."""
+
+    @property
+    def sphere_a(self) -> int | None:
+        """Which sphere of part a, as it was given."""
+
+    @property
+    def sphere_b(self) -> int | None:
+        """Which sphere of part b."""
+
+    @property
+    def links(self) -> tuple[str, str] | None:
+        """The names of both parts, or None."""
+
+    def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> PairClearance: ...
+
+    def __deepcopy__(self, memo: Any) -> PairClearance: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+class SelfClearance:
+    """
+    The least distance of all pairs, in world coordinates. lower <= distance of the solids <= upper. collision: two parts certainly overlap; no_data: there is no pair.
+    """
+
+    @property
+    def a(self) -> int | None:
+        """The number of one part; None without a pair."""
+
+    @property
+    def b(self) -> int | None:
+        """The number of the other, higher one."""
+
+    @property
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
+
+    @property
+    def lower(self) -> float:
+        """Metres: nothing is nearer; 0 if that is not certain."""
+
+    @property
+    def sphere_a(self) -> int | None:
+        """Which sphere of part a, as it was given."""
+
+    @property
+    def sphere_b(self) -> int | None:
+        """Which sphere of part b."""
+
+    @property
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
+
+    @property
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
+
+    @property
+    def at_a(self) -> tuple[float, float, float]:
+        """The nearest places of both spheres, in the world, metres."""
+
+    @property
+    def at_b(self) -> tuple[float, float, float]:
+        """
+        The place on sphere b that is nearest to sphere a, in the world, metres.
+        """
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """The unit vector from b to a."""
+
+    @property
+    def links(self) -> tuple[str, str] | None:
+        """The names of both parts, or None."""
+
+    def __str__(self) -> str: ...
+
+    def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SelfClearance: ...
+
+    def __deepcopy__(self, memo: Any) -> SelfClearance: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+class SelfDistanceResult:
+    """
+    Also of each pair: the pairs of part 0 first, then those of part 1 with higher ones, and so on.
+    """
+
+    @property
+    def a(self) -> int | None:
+        """The number of one part; None without a pair."""
+
+    @property
+    def b(self) -> int | None:
+        """The number of the other, higher one."""
+
+    @property
+    def distance(self) -> float:
+        """Metres; infinite without a pair."""
+
+    @property
+    def lower(self) -> float:
+        """Metres: nothing is nearer; 0 if that is not certain."""
+
+    @property
+    def sphere_a(self) -> int | None:
+        """Which sphere of part a, as it was given."""
+
+    @property
+    def sphere_b(self) -> int | None:
+        """Which sphere of part b."""
+
+    @property
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
+
+    @property
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
+
+    @property
+    def at_a(self) -> tuple[float, float, float]:
+        """The nearest places of both spheres, in the world, metres."""
+
+    @property
+    def at_b(self) -> tuple[float, float, float]:
+        """
+        The place on sphere b that is nearest to sphere a, in the world, metres.
+        """
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """The unit vector from b to a."""
+
+    @property
+    def pairs(self) -> NDArray[numpy.void]:
+        """Of each pair that can meet."""
+
+    @property
+    def links(self) -> tuple[str, str] | None:
+        """The names of both parts, or None."""
+
+    def __str__(self) -> str: ...
+
+    def __repr__(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]:
+        """
+        All members by their names: numbers, names of states, tuples, nested dictionaries, and copies of arrays.
+        """
+
+    def __copy__(self) -> SelfDistanceResult: ...
+
+    def __deepcopy__(self, memo: Any) -> SelfDistanceResult: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
 class Query(Generic[Answer]):
     """
     A question prepared for a robot on one device: make it once and ask it in every frame. Any number of threads may call it.
@@ -2493,6 +2689,89 @@ def protective_separation(*, human_speed: float, robot_speed: float, reaction_ti
     """
     The protective separation distance of ISO/TS 15066, which ISO 10218-2:2025 has taken over, in metres: human_speed (reaction_time + stopping_time) + robot_speed reaction_time + the other terms; m/s, s, m. Compare it with a result's lower. It is the formula and nothing more: no safety function. Raises ValueError for a number that is negative or not finite.
     """
+
+class PartPairs:
+    """
+    Which parts of a robot can meet, as part_pairs and sample_pairs say. Iterating gives pairs of names, and ("hand", "base") in pairs says whether one is there. It never changes.
+    """
+
+    def without(self, a: int | str, b: int | str) -> PartPairs:
+        """The same without one pair: a and b are parts' names or numbers."""
+
+    def including(self, a: int | str, b: int | str) -> PartPairs:
+        """The same with one pair more."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What a person should know about the SRDF file."""
+
+    @property
+    def always(self) -> list[tuple[str, str]]:
+        """Pairs that sample_pairs removed because they touch in all samples."""
+
+    @property
+    def never(self) -> list[tuple[str, str]]:
+        """
+        Pairs that sample_pairs removed because they are beyond reach in all samples.
+        """
+
+    def __len__(self) -> int: ...
+
+    def __iter__(self) -> Iterator[tuple[str, str]]: ...
+
+    def __contains__(self, pair: tuple[str | int, str | int]) -> bool: ...
+
+    def __copy__(self) -> PartPairs: ...
+
+    def __deepcopy__(self, memo: Any) -> PartPairs: ...
+
+    def __getstate__(self) -> tuple[object, ...]: ...
+
+    def __setstate__(self, arg: tuple, /) -> None: ...
+
+    def __repr__(self) -> str: ...
+
+def part_pairs(robot: Robot, srdf: str | PathLike[str] | None = None) -> PartPairs:
+    """
+    Which parts of a robot can meet. Without an SRDF file all pairs but neighbours in its joints: a part and the nearest one above it, and parts that fixed joints hold together. With one (a file or its text) all but what it disables, in MoveIt's order; what is noted is in notes. Raises RuntimeError for a damaged file.
+    """
+
+def sample_pairs(robot: Robot, joints: _Array | Mapping[str, float] | None, reach: float, pairs: PartPairs | None = None, *, poses: ArrayLike | None = None, ignore_limits: bool = False) -> PartPairs:
+    """
+    The pairs without those that touch in all of some configurations, joints (n, joints) spread over the limits, and those that are farther apart than reach (metres) in all. Samples prove nothing: what they miss, the answers miss. pairs: from part_pairs; None: part_pairs(robot).
+    """
+
+class SelfQuery:
+    """
+    Asks how far a robot of inner spheres is from itself, on the CPU: make it once, with the pairs of parts that can meet, and ask it of every configuration.
+    """
+
+    def __init__(self, robot: Robot, pairs: object | None = None) -> None:
+        """
+        pairs: what part_pairs or sample_pairs returned; None: part_pairs(robot). Raises ValueError for a robot of triangles, and for pairs of another one.
+        """
+
+    def __call__(self, joints: _Array | Mapping[str, float] | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> SelfDistanceResult:
+        """
+        The least distance of all pairs, and each pair's. Where the robot is: as for Query.
+        """
+
+    def many(self, joints: _Array | Mapping[str, float] | None = None, *, poses: ArrayLike | None = None, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.void]:
+        """
+        The least distance in each of many configurations, joints (..., joints) or poses (..., parts, 4, 4): a structured array (...) with the members of SelfClearance.
+        """
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that is asked about."""
+
+    @property
+    def pairs(self) -> PartPairs:
+        """The pairs of its parts that can meet."""
+
+    def __reduce__(self) -> tuple[object, ...]: ...
+
+    def __repr__(self) -> str: ...
 
 def joint_gradients(robot: Robot, joints: _Array | Mapping[str, float] | None, result: MinDistanceResult | MinDistancesResult, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
     """
