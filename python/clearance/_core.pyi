@@ -2445,7 +2445,7 @@ class SelfClearance:
 
 class SelfDistanceResult:
     """
-    Also of each pair: the pairs of part 0 first, then those of part 1 with higher ones, and so on.
+    The least distance of all pairs, and each pair's: first those of part 0, then those of part 1 with higher ones.
     """
 
     @property
@@ -2496,7 +2496,7 @@ class SelfDistanceResult:
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
-        """Of each pair that can meet."""
+        """Each pair that can meet."""
 
     @property
     def links(self) -> tuple[str, str] | None:
