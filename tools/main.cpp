@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -105,16 +106,21 @@ void hold_streams() {
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);  // so that using it fails
 }
 
+#if defined(__AVX2__) && defined(__FMA__)
+/// Refuses a processor without wide vectors (CLEARANCE_THIS_PROCESSOR), before anything uses them.
+__attribute__((constructor(101), target("no-avx"))) void refuse_other_processors() {
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return;
+  std::fputs("clearance: this was built for processors with AVX2 and FMA, and this one lacks them: build it here\n",
+             stderr);
+  std::_Exit(failure);
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
   hold_streams();
-#if defined(__AVX2__) && defined(__FMA__)
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-    return fail(
-        "this program was built for processors with AVX2 and FMA, and this one lacks them: build it here, with "
-        "-DCLEARANCE_THIS_PROCESSOR=OFF");
-#endif
   CLI::App app("How far is this robot from everything its depth sensor sees?", "clearance");
   const std::string version = std::to_string(CLEARANCE_VERSION_MAJOR) + '.' + std::to_string(CLEARANCE_VERSION_MINOR) +
                               '.' + std::to_string(CLEARANCE_VERSION_PATCH);
