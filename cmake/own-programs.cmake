@@ -84,7 +84,7 @@ endmacro()
 option(CLEARANCE_THIS_PROCESSOR "Compile our programs for processors like this one alone, in half the time" OFF)
 set(clearance_wide_vectors)
 if(CLEARANCE_THIS_PROCESSOR AND EXISTS /proc/cpuinfo AND NOT CMAKE_CROSSCOMPILING
-   AND NOT CMAKE_CXX_FLAGS MATCHES "-m(avx2|arch)")  # which also libraries have
+   AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}" MATCHES "-m(avx2|arch)")  # which also libraries have
   file(STRINGS /proc/cpuinfo flags REGEX "^flags.* avx2( |$)" LIMIT_COUNT 1)
   if("${flags} " MATCHES " fma ")
     # Spheres are packed as without these flags, because no sum is contracted. Eigen aligns and allocates as in what is
