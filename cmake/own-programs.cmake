@@ -83,8 +83,10 @@ endmacro()
 # without (with_vectors). That takes half the time of most, a fifth of some.
 option(CLEARANCE_THIS_PROCESSOR "Compile our programs for processors like this one alone, in half the time" OFF)
 set(clearance_wide_vectors)
+string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+set(clearance_build_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
 if(CLEARANCE_THIS_PROCESSOR AND EXISTS /proc/cpuinfo AND NOT CMAKE_CROSSCOMPILING
-   AND NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}" MATCHES "-m(avx2|arch)")  # which also libraries have
+   AND NOT clearance_build_flags MATCHES "-m(avx2|arch)")  # which also libraries have
   file(STRINGS /proc/cpuinfo flags REGEX "^flags.* avx2( |$)" LIMIT_COUNT 1)
   if("${flags} " MATCHES " fma ")
     # Spheres are packed as without these flags, because no sum is contracted. Eigen aligns and allocates as in what is
