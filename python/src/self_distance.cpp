@@ -150,7 +150,9 @@ struct self_query_object {
     const placed_robot at = robot_placed(*robot, joints, poses, base, {ignore_limits, rest});
     auto* const all = new std::vector<self_clearance>(alone([&] { return ask->many(at.poses); }));
     const nb::capsule owner(all, [](void* p) noexcept { delete static_cast<std::vector<self_clearance>*>(p); });
-    return array_of(all->data(), all->size(), owner).attr("reshape")(nb::cast(at.shape));
+    const nb::object made = array_of(all->data(), all->size(), owner);
+    const bool in_a_row = at.shape.empty() && all->size() != 1;  // poses of all parts, one configuration after another
+    return in_a_row ? made : nb::object(made.attr("reshape")(nb::cast(at.shape)));
   }
 };
 

@@ -82,10 +82,12 @@ def test_many_configurations_are_answered_as_one_by_one(packed, rng):
         assert (all_["a"][at], all_["b"][at]) == (one.a, one.b) and all_["state"][at] == one.state
         assert all_["lower"][at] == pytest.approx(one.lower, abs=1e-5)
     assert ask.many(poses=packed.poses(q, base)).tobytes() == all_.tobytes()
-    assert ask.many(q[:0]).shape == (0, 5)
+    assert ask.many(q[:0]).shape == (0, 5) and ask.many(q[0, 0]).shape == ()
+    in_a_row = ask.many(poses=packed.poses(q, base).reshape(-1, 4, 4))
+    assert in_a_row.shape == (15,) and in_a_row.tobytes() == all_.tobytes()
 
 
-def test_a_robot_without_a_pair_says_so_and_is_not_free(arm_file):
+def test_a_robot_without_a_pair_says_so_and_is_not_free():
     robot = clearance.Robot.from_spheres({"ball": [[0, 0, 0, 1]]})
     r = clearance.SelfQuery(robot)(rest=True)
     assert r.state == clearance.State.no_data and r.lower == 0 and r.a is None and r.links is None and len(r.pairs) == 0

@@ -109,7 +109,8 @@ srdf_pairs load_srdf_text(std::string_view text, const std::string& name, const 
                           const mesh_limits& limits) {
   if (text.size() > limits.bytes)
     refuse(name, "is longer than the limit of " + std::to_string(limits.bytes) + " bytes (mesh_limits::bytes)");
-  const xml_element root = read_xml(text.substr(declaration_after_blanks(text)), name, limits, xml_prefixes::any);
+  const xml_element root = within_memory(
+      name, [&] { return read_xml(text.substr(declaration_after_blanks(text)), name, limits, xml_prefixes::any); });
   if (root.name != "robot") refuse(name, "is not an SRDF file: it has no element robot", root.line);
   const xml_place robot_place{root, name, ""};
   robot_place.no_text();
