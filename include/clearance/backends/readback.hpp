@@ -71,11 +71,12 @@ class readback {
   template <class Read>
   void read(const Read& one) const {
     std::size_t n = one.size;
+    const unsigned long long* count = one.count;  // of a value's, which is a constant, nvcc would warn
     if constexpr (std::derived_from<On, host>) {
-      if (one.count != nullptr) n = std::size_t(std::min<unsigned long long>(n, *one.count));
+      if (count != nullptr) n = std::size_t(std::min<unsigned long long>(n, *count));
       one.take(one.from, n);
     } else {
-      if (one.count != nullptr) n = std::size_t(std::min<unsigned long long>(n, on_.copy_out(one.count, 1)[0]));
+      if (count != nullptr) n = std::size_t(std::min<unsigned long long>(n, on_.copy_out(count, 1)[0]));
       const std::vector<typename Read::value_type> values = on_.copy_out(one.from, n);
       one.take(values.data(), n);
     }
