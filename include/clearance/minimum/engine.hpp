@@ -82,8 +82,8 @@ class engine<host, PartView, Q> {
     search_(poses, clouds, result, minima);
   }
 
-  /// For the next frame only: pairs farther than `within` metres need not be found. If no pair is nearer, the answer
-  /// has no witness and the state `no_data`, whatever points there were.
+  /// For the next frame only: pairs farther than `within` metres need not be found, unless they may decide what is
+  /// certain. If none is found, the answer has no witness and the state `no_data`, whatever points there were.
   void bound_by(real within)
     requires(!Q::per_part)
   {

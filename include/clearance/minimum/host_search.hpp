@@ -52,10 +52,9 @@ class host_search {
     within_ = infinity;
   }
 
-  /// The next frame alone, which must not ask for minima, need not find anything farther than `within`.
-  void bound_by(real within) {
-    if (extra_.empty()) within_ = within;  // else something farther may decide what is certain
-  }
+  /// The next frame alone, which must not ask for minima, need not find anything farther than `within`, unless it may
+  /// decide what is certain.
+  void bound_by(real within) { within_ = within; }
 
   std::size_t parts() const { return model_.size(); }
 
