@@ -20,7 +20,7 @@ struct scan_arguments;
 /// Law: all blocks call `hand_in`; then the last one calls `conclude` with all its threads, and `reset` with one, which
 /// prepares the next scan.
 template <class T>
-concept block_tally = requires(const typename T::block& s, const scan::scan_arguments<T>& a, std::uint32_t n) {
+concept block_tally = requires(typename T::block& s, const scan::scan_arguments<T>& a, std::uint32_t n) {
   typename T::part_type;
   typename T::element;
   typename T::arguments;
@@ -30,6 +30,7 @@ concept block_tally = requires(const typename T::block& s, const scan::scan_argu
   { T::goes_ahead } -> std::convertible_to<bool>;
   { T::top_bytes } -> std::convertible_to<std::size_t>;
   { T::reach_of_part(s, n, n) } -> std::same_as<real>;
+  { T::bounds_differ(s) } -> std::same_as<bool>;
   T::reset(a);
 };
 

@@ -44,8 +44,11 @@ class device_search {
         records_(launch_.most_blocks() * model.size(), on.id, memory),
         candidates_(launch_.groups() * launch_.most_blocks(), on.id, memory),
         of_group_(launch_.groups() == 1 ? 0 : launch_.groups(), on.id, memory),
-        minima_(frames::parts_decide(model.facts) ? model.size() : 0, on.id, memory) {
+        extra_(frames::parts_decide(model.facts) ? model.size() : 0, on.id, memory) {
     const device_guard guard(on.id);
+    std::vector<real> extra;
+    frames::extra_reaches(facts_, extra);
+    on.stage(std::span<const real>(extra), extra_.data());
     check_cuda(cudaMemsetAsync(witnesses_.data(), 0, witnesses_.size() * sizeof(typename one::witness_type), on.stream),
                "cudaMemsetAsync");
     forget_bounds();
@@ -57,9 +60,9 @@ class device_search {
     forget_bounds();
   }
 
-  /// The next frame alone, which must not be `PerPart`, need not find anything farther than `within`. Enqueued.
+  /// The next frame alone, which must not be `PerPart`, need not find anything farther than `within`, unless it may
+  /// decide what is certain. Enqueued.
   void bound_by(real within) {
-    if (minima_.size() != 0) return;  // something farther may decide what is certain
     const std::uint32_t bound = ordered(within);
     for (std::uint32_t group = 0; group < launch_.groups(); ++group)
       on_.stage(std::span(&bound, 1), state_.data()[group].bound);
@@ -72,8 +75,6 @@ class device_search {
   template <bool PerPart, class Clouds, class Here>
   void enqueue(std::span<const Eigen::Isometry3d> poses, const Clouds& clouds, min_distance_result* result,
                part_minimum* minima, const Here& here, std::uint32_t* done = nullptr, std::uint32_t number = 0) {
-    if constexpr (!PerPart)
-      if (minima_.size() != 0) return enqueue<true>(poses, clouds, result, minima_.data(), here, done, number);
     const ending end{result, minima, done, number};
     try {
       frames::for_each_turn(frame_, facts_, poses, clouds, [&](const auto& anywhere, const frames::turn& now) {
@@ -93,8 +94,6 @@ class device_search {
   template <bool PerPart, point_source S>
   void enqueue(const world_transform* poses, const S& source, const world_transform* cloud_pose,
                min_distance_result* result, part_minimum* minima) {
-    if constexpr (!PerPart)
-      if (minima_.size() != 0) return enqueue<true>(poses, source, cloud_pose, result, minima_.data());
     const ending end{result, minima, nullptr, 0};
     launch_.place(poses, cloud_pose, rounding_of(source));
     for (std::uint32_t group = 0; group < launch_.groups(); ++group)
@@ -135,7 +134,9 @@ class device_search {
         {state_.data() + group, witnesses_.data() + before,
          records_.data() + std::size_t(before) * launch_.most_blocks(),
          candidates_.data() + group * launch_.most_blocks(), alone ? end.result : of_group_.data() + group,
-         Tally::bound_per_part ? end.minima + before : nullptr, launch_.fields(group), scan::elements_of(source)});
+         Tally::bound_per_part ? end.minima + before : nullptr,
+         Tally::bound_per_part || extra_.size() == 0 ? nullptr : extra_.data() + before, launch_.fields(group),
+         scan::elements_of(source)});
     if (alone) {
       a.done = end.done;
       a.number = end.number;
@@ -157,7 +158,7 @@ class device_search {
   device_buffer<typename one::record> records_;
   device_buffer<typename one::witness_type> candidates_;
   device_buffer<min_distance_result> of_group_;
-  device_buffer<part_minimum> minima_;  ///< If parts decide what is certain, each is searched for its own.
+  device_buffer<real> extra_;  ///< See extra_reaches.
   frames::cloud_frame frame_;
 };
 
@@ -222,8 +223,8 @@ class engine<device, PartView, Q> {
     search_.template enqueue<Q::per_part>(poses, source, cloud_pose, result, minima);
   }
 
-  /// For the next frame only: pairs farther than `within` metres need not be found. If no pair is nearer, the answer
-  /// has no witness and the state `no_data`, whatever points there were.
+  /// For the next frame only: pairs farther than `within` metres need not be found, unless they may decide what is
+  /// certain. If none is found, the answer has no witness and the state `no_data`, whatever points there were.
   void bound_by(real within)
     requires(!Q::per_part)
   {

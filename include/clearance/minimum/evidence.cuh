@@ -66,7 +66,10 @@ __device__ void best_of_warp(typename Tally::block& s, const typename Tally::rec
     const std::uint32_t least = scan::least_of(__match_any_sync(scan::all_lanes, r.part), mine);
     if (r.key == no_key || mine != least || r.key > atomicMin(&s.answer.least[r.part], r.key)) return;
   } else {
+    const bool parts_decide = Tally::bounds_differ(s);
+    if (parts_decide && r.key != no_key) Tally::lower(s, r.part, key_distance(r.key));
     if (!same(r, least_of_warp(r))) return;
+    if (parts_decide && r.key > atomicMin(&s.answer.least[0], r.key)) return;  // it was farther, and decides
   }
   Tally::lower(s, r.part, key_distance(r.key));
   keep_best<Tally>(s, r, primitive);
@@ -144,25 +147,46 @@ struct evidence {
   }
 };
 
+/// How far the robot is at least: if what is taken of every part's distance is the same;
+template <class Tally>
+__device__ double certain_of(const scan::scan_arguments<Tally>& a, const typename Tally::record& best) {
+  return frames::certain_distance(key_distance(best.key), a.facts().slop, a.facts().error);
+}
+/// by the block's best of each part;
+template <class Tally>
+__device__ double certain_of_each(const scan::scan_arguments<Tally>& a) {
+  using parts = scan::frame_parts<Tally>;
+  return frames::certain_distance(
+      a.parts, [](std::uint32_t k) { return key_distance(parts::here().answer.best[k].key); },
+      [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, a.facts().error);
+}
+/// by the parts' own bounds, which are forgotten then. Called by a warp.
+template <class Tally>
+__device__ double certain_of_parts(const scan::scan_arguments<Tally>& a) {
+  using parts = scan::frame_parts<Tally>;
+  const std::uint32_t lane = threadIdx.x % 32, its = lane < a.parts ? (a.parts - lane + 31) / 32 : 0;
+  double least = frames::certain_distance(
+      its,
+      [&](std::uint32_t k) {
+        std::uint32_t& bound = a.answer.state->bound[1 + lane + 32 * k];
+        const std::uint32_t known = scan::fresh(bound);
+        bound = no_bound;
+        return from_ordered(known);
+      },
+      [&](std::uint32_t k) -> const part_facts& { return parts::view(lane + 32 * k).facts; }, a.facts().error);
+  for (int step = 1; step < 32; step *= 2) least = fmin(least, __shfl_xor_sync(scan::all_lanes, least, step));
+  return least;
+}
+
 /// The minimum `best` with its bracket, after all clouds. `certain`: some point is certainly inside.
 template <class Tally>
 __device__ min_distance_result bracket_of(const scan::scan_arguments<Tally>& a, const typename Tally::record& best,
-                                          bool certain) {
-  using parts = scan::frame_parts<Tally>;
-  const auto& s = parts::here().answer;
-  const frames::frame_facts& frame = a.facts();
+                                          bool certain, double lower) {
   min_distance_result r;
   if (best.key == no_key) return r;
   r.distance = key_distance(best.key);
   r.part = best.part;
-  double lower;
-  if constexpr (Tally::bound_per_part)
-    lower = frames::certain_distance(
-        a.parts, [&](std::uint32_t k) { return key_distance(s.best[k].key); },
-        [](std::uint32_t k) -> const part_facts& { return parts::view(k).facts; }, frame.error);
-  else
-    lower = frames::certain_distance(r.distance, frame.slop, frame.error);
-  frames::bracket(r, lower, parts::view(best.part).facts.tolerance, certain, frame.error);
+  frames::bracket(r, lower, scan::frame_parts<Tally>::view(best.part).facts.tolerance, certain, a.facts().error);
   return r;
 }
 

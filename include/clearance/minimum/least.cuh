@@ -32,7 +32,7 @@ __forceinline__ __device__ void draft_answer(const scan::scan_arguments<Tally>& 
       break;
     }
     case 3: {
-      const min_distance_result r = bracket_of(a, s.best[0], false);
+      const min_distance_result r = bracket_of(a, s.best[0], false, certain_of(a, s.best[0]));
       s.answer.state = r.state;
       s.answer.part = r.part;
       s.answer.distance = r.distance;
@@ -100,6 +100,9 @@ struct one_minimum {
       }
       if (t == 96) out.part = s.answer.part;
     }
+    const bool parts_decide = Tally::bounds_differ(block);
+    double lower = 0;
+    if (parts_decide && t / 32 == 3 && a.last) lower = certain_of_parts(a);
     if (t == 96 && a.last) {
       const counted all(a);
       min_distance_result r;
@@ -109,8 +112,9 @@ struct one_minimum {
         r.distance = s.answer.distance;
         r.lower = s.answer.lower;
         r.upper = s.answer.upper;
-      } else
-        r = bracket_of(a, key != no_key ? state.best[0] : typename Tally::record{}, false);
+      } else if (key != no_key)
+        r = bracket_of(a, state.best[0], false, certain_of(a, state.best[0]));
+      if (parts_decide && r.part != none) r = bracket_of(a, {make_key(r.distance, 0), r.part}, all.certain, lower);
       if (all.certain && r.part != none) {
         r.state = clearance::state::collision;
         r.lower = r.upper = 0;
@@ -152,7 +156,7 @@ struct part_minima {
     if (!rigid()) best = {};
     const bool mine_here = mine.r.key != no_key && key_index(mine.r.key) >= a.first;
     if (mine_here && same(mine.r, best)) evidence_type(mine).write(a);
-    if (concludes) write_bracket(a, bracket_of(a, best, all.certain), all);
+    if (concludes) write_bracket(a, bracket_of(a, best, all.certain, certain_of_each(a)), all);
     // Kept for the next frame: every part's minimum.
     if (const std::uint32_t slot = t / 32 + scan::warps * (t & 31); slot < a.parts) {
       state.best[slot] = s.best[slot];
@@ -215,6 +219,7 @@ struct least {
   using seeds = last_frame<least>;
   static constexpr bool bound_per_part = PerPart, goes_ahead = false;
   static constexpr std::uint32_t slots = PerPart ? scan::most_parts : 1;
+  static constexpr std::uint32_t bounds = PerPart ? scan::most_parts : 1 + scan::most_parts;
   /// 73 nodes (three levels) of each of eight sphere trees. It leaves room for two blocks on a processor of an H200.
   static constexpr std::size_t top_bytes = PerPart ? 10000 : 14016;
 
@@ -225,12 +230,15 @@ struct least {
     witness_type* candidates;  ///< else room for one per block.
     min_distance_result* result;
     part_minimum* minima;      ///< One per part, or null.
+    const real* extra;         ///< `extra_reaches`, one per part; null if the nearest pair decides, or with `minima`.
     const field_view* fields;  ///< One per part, or null: for a first bound.
     Around around;
   };
 
   struct memory {
-    std::uint32_t bound[slots];  ///< ordered(): the least that this block knows, and at times the least of all blocks.
+    /// ordered(): the least that this block knows, and at times the least of all blocks. If parts share the first, and
+    /// have `extra`, the others are their own: no more than may decide what is certain.
+    std::uint32_t bound[bounds];
     std::uint32_t seed_of_warp[scan::warps];
     record best[slots];
     primitive_type nearest;     ///< The primitive of `best`, if all parts share a bound.
@@ -246,24 +254,36 @@ struct least {
         least[thread] = no_key;
         lock[thread] = 0;
       }
+      if (!PerPart && thread < scan::most_parts) bound[1 + thread] = no_bound;
       if (thread == scan::block_threads - 64) kept = 0;
     }
   };
 
   static __device__ std::uint32_t slot(std::uint32_t part) { return PerPart ? part : 0; }
+  static __device__ bool bounds_differ(const block& s) { return PerPart || s.head.answer.extra != nullptr; }
   static __device__ real reach(const block& s, std::uint32_t part) {
-    return from_ordered(scan::fresh(s.answer.bound[slot(part)]));
+    return from_ordered(scan::fresh(s.answer.bound[PerPart ? part : bounds_differ(s) ? 1 + part : 0]));
   }
-  static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t bound) {
-    return PerPart ? reach(s, part) : from_ordered(bound);
+  /// Lowers a part's own bound to what may decide beside the bound of all. The nearest pair itself stays below that, so
+  /// that `lower` tells others of it.
+  static __device__ real reach_of_part(block& s, std::uint32_t part, std::uint32_t bound) {
+    if constexpr (PerPart) return reach(s, part);
+    if (!bounds_differ(s)) return from_ordered(bound);
+    const std::uint32_t most = ordered(frames::farther(from_ordered(bound), s.head.answer.extra[part])),
+                        cut = most < no_bound ? most + 1 : most;
+    return from_ordered(scan::lower_of(cut, atomicMin(&s.answer.bound[1 + part], cut)));
   }
   static __device__ real reach_of_pair(const block& s, std::uint32_t part, std::uint32_t) { return reach(s, part); }
   /// The bound of all parts, if they share one.
   static __device__ std::uint32_t common_bound(const block& s) { return scan::fresh(s.answer.bound[0]); }
 
   static __device__ void lower(block& s, std::uint32_t part, real distance) {
-    const std::uint32_t u = ordered(distance);
-    if (u < atomicMin(&s.answer.bound[slot(part)], u)) atomicMin(&s.head.answer.state->bound[slot(part)], u);
+    const auto lower_here = [&](std::uint32_t i) {
+      const std::uint32_t u = ordered(distance);
+      if (u < atomicMin(&s.answer.bound[i], u)) atomicMin(&s.head.answer.state->bound[i], u);
+    };
+    if (!PerPart && bounds_differ(s)) lower_here(1 + part);
+    lower_here(slot(part));
   }
 
   /// True if nothing is left to learn. It stays false for the point of the minimum itself: another part may have been
@@ -297,10 +317,11 @@ struct least {
   /// The bounds of other blocks. They are requested some rounds before they are read, so that nothing waits for memory.
   class news {
    public:
-    explicit __device__ news(const block& s) : bounds_(PerPart ? s.head.parts : 1) { ask(s); }
+    explicit __device__ news(const block& s) : bounds_(bounds_differ(s) ? !PerPart + s.head.parts : 1) { ask(s); }
     __device__ void hear(block& s) {
       if (threadIdx.x >= bounds_) return;
       if (elsewhere_ < scan::fresh(s.answer.bound[threadIdx.x])) atomicMin(&s.answer.bound[threadIdx.x], elsewhere_);
+      if (!PerPart && threadIdx.x != 0) reach_of_part(s, threadIdx.x - 1, common_bound(s));
       ask(s);
     }
 
@@ -322,7 +343,7 @@ struct least {
   template <class Source>
   static __device__ void conclude(const scan::scan_arguments<least>& a, const Source& source) {
     end::answer(a, source);
-    if (a.last && threadIdx.x < scan::most_parts) a.answer.state->bound[threadIdx.x] = no_bound;
+    if (a.last && threadIdx.x < slots) a.answer.state->bound[threadIdx.x] = no_bound;
   }
   /// Called by one thread, after `conclude`.
   static __device__ void reset(const scan::scan_arguments<least>& a) {

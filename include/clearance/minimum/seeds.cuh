@@ -24,12 +24,13 @@ struct witness {
 };
 
 /// Lives in device memory from frame to frame. The last block of a frame resets all but the number of witnesses. If all
-/// parts share a bound, it is in slot 0; otherwise each part has its own slot.
+/// parts share a bound, it is in slot 0, and part k's own, if it may decide what is certain, in slot 1 + k; otherwise
+/// each part has its own slot.
 template <class Record>
 struct device_state {
-  std::uint32_t bound[scan::most_parts];  ///< ordered() upper bounds of this frame, shared by all blocks.
-  Record best[scan::most_parts];          ///< Minima over the finished clouds,
-  distance_key best_key = no_key;         ///< and over the finished blocks, if all parts share a bound.
+  std::uint32_t bound[scan::most_parts + 1];  ///< ordered() upper bounds of this frame, shared by all blocks.
+  Record best[scan::most_parts];              ///< Minima over the finished clouds,
+  distance_key best_key = no_key;             ///< and over the finished blocks, if all parts share a bound.
   std::uint32_t witnesses = 0;
   std::uint32_t seeded = 0;  ///< Blocks that have seeded (cold frames only).
   unsigned long long certain = 0;

@@ -146,6 +146,7 @@ struct pairs_of {
     }
   };
 
+  static constexpr __device__ bool bounds_differ(const block&) { return true; }
   static __device__ real reach_of_part(const block& s, std::uint32_t part, std::uint32_t) {
     return s.head.answer.answer.reach(s.head.answer.first_part + part);
   }

@@ -70,6 +70,7 @@ struct points_of {
     }
   };
 
+  static constexpr __device__ bool bounds_differ(const block&) { return true; }
   static __device__ real reach_of_part(const block& s, std::uint32_t, std::uint32_t) { return s.head.answer.d_max; }
 
   /// True if no point is too far away to matter.

@@ -13,8 +13,8 @@ __device__ real limit_for(const ball& around, real reach) {
   return std::is_same_v<typename Tally::element, vec3> ? limit : max(limit, 0);
 }
 
-/// Sets the root tests to the present bounds, one thread per test. `bound` is that of all parts, if they share one. No
-/// thread may be reading the tests.
+/// Sets the root tests to the present bounds, one thread per test. `bound` is the tally's `common_bound`. No thread may
+/// be reading the tests.
 template <class Tally>
 __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   using parts = frame_parts<Tally>;
@@ -27,7 +27,7 @@ __device__ void sharpen(std::uint32_t thread, std::uint32_t bound) {
   if (thread < most_parts || first >= s.head.parts) return;
   const frames::root_ball& root = s.cluster[c];
   real most = -infinity;
-  if constexpr (Tally::bound_per_part) {
+  if (Tally::bounds_differ(s)) {
     for (std::uint32_t k = first; k < first + cluster && k < s.head.parts; ++k)
       most = max(most, limit_for<Tally>({{}, parts::place(k).away}, Tally::reach_of_part(s, k, bound)));
   } else {
