@@ -53,6 +53,11 @@ with tempfile.TemporaryDirectory() as name:
     assert recorded.key(f"h200/latency.txt: {rows[1]}, us .1f, at least 101") == "101.0"
     assert recorded.key("h200/latency.txt: commit") == "0123abc"
 
+    said, rows_then = "How it was run, which no program prints.", written.read_text()
+    written.write_text(rows_then.replace("\n\n", f"\n\n{said}\n\n", 1))
+    records.main([str(run)])
+    assert written.read_text() == rows_then.replace("\n\n", f"\n\n{said}\n\n", 1), "a person's sentences are kept"
+
     (run / "summary.txt").write_text(summary.replace("0123abc", "0123abc-dirty"))
     assert refused(run), "a commit that nobody else has"
     alone = recorded.root / "fuzz.txt"

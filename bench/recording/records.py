@@ -35,6 +35,12 @@ def folder_of(head):
     return min(folders, key=lambda f: head.lower().index(f.name))
 
 
+def how_it_was_run(older):
+    """The sentences below the first line of a record of rows, if it has some."""
+    paragraphs = older.read_text().split("\n\n") if older.is_file() else []
+    return [paragraphs[1]] if len(paragraphs) > 2 and paragraphs[1].endswith(".") else []
+
+
 def record(file, asked):
     """Writes the record of a file, and returns where it lies."""
     machines, commit, day = ran_in(file.parent)
@@ -56,6 +62,9 @@ def record(file, asked):
         raise Mistake(f"{file}: '{text.splitlines()[0]}' does not name a machine and a commit")
     name = re.sub("^bench_|_device$", "", file.stem)
     there = folder_of(text.splitlines()[0]) / f"{name.removeprefix('min_distance_')}.txt"
+    if file.suffix == ".json":
+        head, rows = text.split("\n\n", 1)
+        text = "\n\n".join([head, *how_it_was_run(there), rows])
     there.write_text("\n".join(line.rstrip() for line in text.strip("\n").splitlines()) + "\n")
     return there
 
