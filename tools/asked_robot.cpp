@@ -134,6 +134,17 @@ asked_robot load_robot(const query_options& asked, std::vector<std::string>& not
   return made;
 }
 
+std::vector<double> named_configuration(const query_options& asked, const io::kinematic_tree& tree) {
+  if (!asked.joints.empty()) {
+    if (asked.joints.size() == tree.size()) return asked.joints;
+    std::string names;
+    for (std::size_t i = 0; i < tree.size(); ++i) names += (i ? "," : "") + tree.movable(i).name;
+    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints (" + names +
+                                      "), here are " + std::to_string(asked.joints.size()) + " values");
+  }
+  return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
+}
+
 std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const io::robot& robot,
                                          const std::vector<double>& joints) {
   return about_file(asked.robot, [&] {

@@ -49,6 +49,9 @@ struct asked_robot {
 /// Reads all files. Notes are shown to the user.
 asked_robot load_robot(const query_options& asked, std::vector<std::string>& notes);
 
+/// The configuration of --joints or --joint.
+std::vector<double> named_configuration(const query_options& asked, const clearance::io::kinematic_tree& tree);
+
 /// The poses of all links, moved to the base.
 std::vector<Eigen::Isometry3d> all_links(const query_options& asked, const clearance::io::robot& robot,
                                          const std::vector<double>& joints);

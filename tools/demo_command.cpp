@@ -164,6 +164,6 @@ subcommand add_demo(CLI::App& app) {
   return [settings] { return run(*settings); };
 }
 
-const listed_subcommand listed_demo(4, add_demo);
+const listed_subcommand listed_demo(5, add_demo);
 
 }  // namespace

@@ -171,6 +171,6 @@ subcommand add_info(CLI::App& app) {
   };
 }
 
-const listed_subcommand listed_info(5, add_info);
+const listed_subcommand listed_info(6, add_info);
 
 }  // namespace

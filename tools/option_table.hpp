@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every option of `query`, `run` and `plan`, what each needs, and what becomes of two that are given together. A test
+// Every option of `query`, `run`, `plan` and `self`, what each needs, and what becomes of two that are given together. A test
 // goes through all pairs.
 
 #include <algorithm>
@@ -65,6 +65,8 @@ inline constexpr declared_option option_table[] = {
     {"--stamps", option_is::file},
     {"--max-age", option_is::scene},
     {"--configurations", option_is::file},
+    {"--srdf", option_is::file},
+    {"--allow", option_is::scene},
     {"--help", option_is::course},
     {"--threads", option_is::course},
     {"--backend", option_is::course},
@@ -210,6 +212,7 @@ inline constexpr need_rule need_rules[] = {
     {"--cells", {"--distances"}, "is for --distances"},
     {"--support-limit", {"--min-support"}, "is for --min-support"},
     {"--fields", {"--plan", "--configurations"}, "is for --plan"},
+    {"--csv", {"--frames", "--configurations"}, "is for --configurations"},
     {"--d-max", {"--distances", "--nearest", "--configurations"}, "is for --distances and --nearest"},
 };
 

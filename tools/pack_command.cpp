@@ -274,6 +274,6 @@ subcommand add_pack(CLI::App& app) {
   return [asked] { return run(*asked); };
 }
 
-const listed_subcommand listed_pack(3, add_pack);
+const listed_subcommand listed_pack(4, add_pack);
 
 }  // namespace

@@ -25,17 +25,6 @@ using namespace clearance;
 
 namespace {
 
-std::vector<double> configuration(const query_options& asked, const io::kinematic_tree& tree) {
-  if (!asked.joints.empty()) {
-    if (asked.joints.size() == tree.size()) return asked.joints;
-    std::string names;
-    for (std::size_t i = 0; i < tree.size(); ++i) names += (i ? "," : "") + tree.movable(i).name;
-    throw usage_error("--joints", "the robot has " + std::to_string(tree.size()) + " movable joints (" + names +
-                                      "), here are " + std::to_string(asked.joints.size()) + " values");
-  }
-  return tree.configuration({asked.joint.begin(), asked.joint.end()}, {asked.ignore_limits});
-}
-
 /// How each part's distance changes.
 std::vector<part_gradient> gradients(const query_options& asked, const asked_robot& robot,
                                      const std::vector<double>& joints, poses_of poses,
@@ -176,7 +165,7 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.asked = &asked;
   const asked_robot robot = load_robot(asked, report.notes);
   report.robot = &robot;
-  const auto joints = about_file(asked.robot, [&] { return configuration(asked, robot.description.kinematics()); });
+  const auto joints = about_file(asked.robot, [&] { return named_configuration(asked, robot.description.kinematics()); });
   const std::vector<Eigen::Isometry3d> poses = placed_links(asked, robot, joints);
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);

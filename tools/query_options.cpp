@@ -23,11 +23,11 @@ using texts = std::vector<std::string>;
 struct raw_options {
   std::string robot, joints, geometry, base, model, volume, spheres, packing, cache, backend, check, scene, frames,
       trajectory, unfolded;
-  std::string zones, min_points, distances, d_max, configurations, plan, self_filter, min_support, support_limit, svg,
-      gltf_up, report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
+  std::string zones, min_points, distances, d_max, configurations, srdf, plan, self_filter, min_support, support_limit,
+      svg, gltf_up, report, deadline, nearest, delay, max_speed, plan_time, joint_error, joint_speed, stamps, max_age;
   std::optional<std::string> unseen, fields;  // without a value: empty
   texts attached, attached_poses, joint, packages, mesh_limits, excluded, clouds, poses, links, cameras, scales,
-      cloud_scales, ranges, sensors, calibrations, crops, crops_out, heights, planes;
+      cloud_scales, ranges, sensors, calibrations, crops, crops_out, heights, planes, allowed;
   bool ignore_limits = false, strict = false, json = false, no_cache = false, merge = false, csv = false,
        gradient = false, shard = false, is_signed = false, between = false, cells = false;
 };
@@ -272,6 +272,10 @@ query_options read(const CLI::App& app, const raw_options& raw) {
     o.joint.emplace_back(name, number("--joint " + name, value));
   }
   if (!o.joints.empty() && !o.joint.empty()) throw usage_error("--joints", "cannot be mixed with --joint");
+  if (!o.joints.empty() && !raw.configurations.empty())
+    throw usage_error("--joints", "cannot be mixed with --configurations");
+  o.srdf = raw.srdf;
+  for (const auto& text : raw.allowed) o.allowed.push_back(assignment("--allow", text, "LINK=LINK"));
 
   o.ignore_limits = raw.ignore_limits;
   o.strict = raw.strict;
@@ -299,7 +303,8 @@ query_options read(const CLI::App& app, const raw_options& raw) {
   o.no_cache = raw.no_cache;
   o.cache = raw.cache;
   o.excluded = raw.excluded;
-  o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
+  if (app.get_option_no_throw("--backend"))
+    o.on_device = raw.backend.empty() ? find_device().present : is_device(raw.backend);
   o.json = raw.json;
   o.scene = raw.scene;
 
@@ -365,6 +370,10 @@ void add_joint_options(CLI::App& app, raw_options& raw, asking how) {
     app.add_option("--joints", raw.joints,
                    "a,b,...: joint positions (rad, m) in the file's order of movable, non-mimic joints");
     app.add_option("--joint", raw.joint, "name=value: the position of one joint; others are 0 or their nearest limit");
+    if (how == asking::self)
+      app.add_option("--configurations", raw.configurations,
+                     "Instead: CSV, a line with the names of the joints, then one configuration a row; --joint for one "
+                     "that has no column");
   }
 }
 
@@ -420,9 +429,9 @@ void add_uncertainty(CLI::App& app, raw_options& raw, asking how) {
 }
 
 void add_model_options(CLI::App& app, raw_options& raw, asking how) {
-  const bool recorded = how == asking::run, planned = how == asking::plan;
-  app.add_option("--model", raw.model, "spheres (default) or triangles");
-  if (!planned)
+  const bool recorded = how == asking::run, planned = how == asking::plan, itself = how == asking::self;
+  if (!itself) app.add_option("--model", raw.model, "spheres (default) or triangles");
+  if (!planned && !itself)
     app.add_option(
         "--volume", raw.volume,
         "sphere, aabb or obb, for the least distance alone (default: sphere for spheres, obb for triangles)");
@@ -438,12 +447,12 @@ void add_model_options(CLI::App& app, raw_options& raw, asking how) {
                  ".yaml, .csv); may be repeated");
   app.add_option("--attach-pose", raw.attached_poses,
                  "x,y,z,qx,qy,qz,qw: link-from-thing, of the --attach before it (m; default: the link's origin)");
-  app.add_option("--backend", raw.backend, "host or device (default: device where there is one)");
+  if (!itself) app.add_option("--backend", raw.backend, "host or device (default: device where there is one)");
   app.add_option("--check", raw.check,
                  std::string("Margin in m: exit code 2 unless the lower end of the bracket is above it") +
-                     (recorded  ? " in every frame, and for every row of --plan"
-                      : planned ? " in every configuration"
-                                : ""));
+                     (recorded            ? " in every frame, and for every row of --plan"
+                      : planned || itself ? " in every configuration"
+                                          : ""));
 }
 
 const char* const of_clouds =
@@ -503,6 +512,19 @@ void add_run_questions(CLI::App& app, raw_options& raw) {
       "Prints one line per frame, a JSON object. latency_us is the time of the query alone, on the host's clock; a "
       "frame's points\n"
       "are read before. The exit code is 3 if a frame has no valid point, also with --check.");
+}
+
+void add_self_questions(CLI::App& app, raw_options& raw) {
+  app.add_option(
+      "--srdf", raw.srdf,
+      "The robot's SRDF file: which pairs of links can meet, as MoveIt reads it (default: all but neighbours "
+      "in the robot's joints)");
+  app.add_option("--allow", raw.allowed, "LINK=LINK: these two may touch, and are not asked about; may be repeated");
+  app.add_flag("--json", raw.json, "Print one JSON object; with --configurations one a row, and a last one about all");
+  app.add_flag("--csv", raw.csv, "With --configurations: print CSV");
+  app.footer(
+      "Links are asked about by their inner spheres, on the CPU.\n"
+      "Exit codes: 0 done; 1 an error, wrong usage included; 2 --check fails.");
 }
 
 void add_query_questions(CLI::App& app, raw_options& raw) {
@@ -567,10 +589,15 @@ std::function<query_options()> add_query_options(CLI::App& app, asking how) {
   app.add_option("--robot", raw->robot, "Robot description, URDF")->required();
   add_joint_options(app, *raw, how);
   add_robot_options(app, *raw);
-  add_cloud_options(app, *raw, how);
-  add_uncertainty(app, *raw, how);
+  if (how != asking::self) {
+    add_cloud_options(app, *raw, how);
+    add_uncertainty(app, *raw, how);
+  }
   add_model_options(app, *raw, how);
   switch (how) {
+    case asking::self:
+      add_self_questions(app, *raw);
+      break;
     case asking::plan:
       add_plan_questions(app, *raw);
       break;

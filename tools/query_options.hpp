@@ -118,11 +118,13 @@ struct query_options {
   std::optional<joints_off> certain;        // any option about uncertainty was given
   std::optional<clearance::hiding> unseen;  // --unseen
   bool gradient = false;
-  std::optional<double> deadline;  // --deadline: milliseconds for the least distance
-  bool shard = false;              // --shard: one of the ranks that mpirun started
-  std::string configurations;      // for `clearance plan`
-  bool csv = false;                // for `clearance plan` and `clearance run`
-  bool between = false;            // for `clearance plan`
+  std::optional<double> deadline;                            // --deadline: milliseconds for the least distance
+  bool shard = false;                                        // --shard: one of the ranks that mpirun started
+  std::string configurations;                                // for `clearance plan` and `clearance self`
+  std::string srdf;                                          // for `clearance self`; empty: all pairs but neighbours
+  std::vector<std::pair<std::string, std::string>> allowed;  // --allow: pairs of links that may touch
+  bool csv = false;                                          // for all but `clearance query`
+  bool between = false;                                      // for `clearance plan`
   std::optional<bool> fields;      // for `clearance plan` and the plan of `clearance run`; auto: not given
   recording_options recording;     // for `clearance run`
   std::vector<std::string> notes;  // about options that are given together
@@ -135,7 +137,7 @@ struct query_options {
 /// saves, else if they are kept.
 field_use uses_fields(const query_options& asked, std::size_t configurations);
 
-enum class asking { query, run, plan };
+enum class asking { query, run, plan, self };
 
 /// Declares a subcommand's options; the returned function reads them after parsing. Throws usage_error.
 std::function<query_options()> add_query_options(CLI::App& app, asking how);

@@ -52,9 +52,8 @@ pairs_object pairs_of(const robot_model& robot, nb::handle srdf) {
   pairs_object made{part_pairs(robot.parts()), robot.names, {}, {}, {}};
   if (srdf.is_none() && !robot.description) return made;
   const io::robot& described = robot.described();
-  const part_pairs apart = io::pairs_without_neighbours(described);
   if (srdf.is_none()) {
-    made.pairs = apart;
+    made.pairs = io::pairs_without_neighbours(described);
     return made;
   }
   const std::string file = file_of(srdf, "srdf");
@@ -62,12 +61,12 @@ pairs_object pairs_of(const robot_model& robot, nb::handle srdf) {
                             : io::load_srdf(file, described);
   made.pairs = std::move(read.pairs);
   made.notes = std::move(read.notes);
-  for (const std::string& name : robot.held) {  // no file knows them
-    const std::size_t k = std::size_t(std::ranges::find(*robot.names, name) - robot.names->begin());
-    for (std::size_t other = 0; other < robot.parts(); ++other)
-      if (other != k && !apart.has(k, other)) made.pairs.remove(k, other);
+  std::vector<std::size_t> held;
+  for (const std::string& name : robot.held) {
+    held.push_back(std::size_t(std::ranges::find(*robot.names, name) - robot.names->begin()));
     made.notes.push_back("part " + io::quoted(name) + " is attached: its pairs with what holds it are left out");
   }
+  io::remove_pairs_of_held(made.pairs, described, held);
   return made;
 }
 

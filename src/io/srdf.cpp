@@ -100,6 +100,13 @@ part_pairs pairs_without_neighbours(const robot& described) {
   return pairs;
 }
 
+void remove_pairs_of_held(part_pairs& pairs, const robot& described, std::span<const std::size_t> held) {
+  const part_pairs apart = pairs_without_neighbours(described);
+  for (const std::size_t k : held)
+    for (std::size_t other = 0; other < apart.parts(); ++other)
+      if (other != k && !apart.has(k, other)) pairs.remove(k, other);
+}
+
 srdf_pairs load_srdf(const std::filesystem::path& srdf, const robot& described, const mesh_limits& limits) {
   const std::string file = srdf.string();
   return load_srdf_text(read_bytes(file, {.piped = limits.bytes}), file, described, limits);

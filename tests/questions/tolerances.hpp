@@ -100,6 +100,10 @@ struct rule_of_slop {
         v.require(same_result(r.of[0], expected) && same_result(r.of[1], expected), what, ", ", form, " within", d_max,
                   ": at least", r.of[1].lower, ", and not", expected.lower);
       }
+      if (!(least > 0)) return;
+      const auto none_near = asks(many, source, clearance::min_distances{0.95 * least}).of[1];
+      v.require(none_near.part == clearance::none && none_near.lower <= expected.lower, what, ", ", form,
+                ": a witness beyond d_max, or at least", none_near.lower, ", and not", expected.lower);
     };
     plans(plan, cloud, all, "min_distances");
     const auto fielded = clearance::with_fields(on, model, {1 << 16}).model.on(on);

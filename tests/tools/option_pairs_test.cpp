@@ -10,11 +10,11 @@ namespace option_pairs_test {
 
 using namespace testing;
 
-TEST_CASE("Every option of query, run and plan is declared in the table, once") {
+TEST_CASE("Every option of query, run, plan and self is declared in the table, once") {
   std::set<std::string_view> names;
   for (const declared_option& option : option_table) CHECK(names.insert(option.name).second);
   std::set<std::string> listed;
-  for (const char* command : {"query", "run", "plan"})
+  for (const char* command : {"query", "run", "plan", "self"})
     for (const std::string& name : options_of(command)) {
       INFO(command << ' ' << name);
       CHECK(names.contains(name));

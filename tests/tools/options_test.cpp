@@ -47,6 +47,7 @@ TEST_CASE(
       {"run", "--robot " + urdf.path + " --frames " + cloud.path + " --model triangles --backend host"},
       {"plan", "--robot " + urdf.path + " --cloud " + cloud.path + " --configurations " + csv.path +
                    " --model triangles --backend host"},
+      {"self", "--robot " + urdf.path},
       {"pack", obj.path + " --spheres 5"},
       {"demo", ""},
       {"info", ""}};

@@ -7,6 +7,7 @@
 #include <clearance/robot/part_pairs.hpp>
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ namespace clearance::io {
 /// unless two prismatic joints or more lie between, as those of a planar or floating joint; and parts that fixed
 /// joints alone hold together.
 part_pairs pairs_without_neighbours(const robot& described);
+
+/// Removes the pairs of parts that are attached, by number, with what holds them, which no SRDF file knows.
+void remove_pairs_of_held(part_pairs& pairs, const robot& described, std::span<const std::size_t> held);
 
 /// The pairs that an SRDF file leaves, and sentences to show to a user, such as that it names a link that is not there.
 struct srdf_pairs {

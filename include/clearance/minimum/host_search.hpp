@@ -6,6 +6,7 @@
 #include <clearance/minimum/plain_search.hpp>
 #include <clearance/traversal/any_depth.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace clearance::minimum {
@@ -80,11 +81,17 @@ class host_search {
       });
     workers_.for_pieces(n, scan::piece_points,
                         [&](std::size_t begin, std::size_t end) { body(indices{begin, end, 1}); });
+    shared_bounds found = bounds;
+    totals pairs = totals_;
+    if (bounds.extra != nullptr) {  // the nearest pair may be farther than what `bound_by` said
+      pairs.best = *std::ranges::min_element(part_best_);
+      found.all = &pairs;
+    }
     const resolve_body<PartView, S, any_depth> resolve{model_.parts,  frame_.places.data(),
                                                        parts,         source,
                                                        frame_.origin, frame_.world_from_cloud,
                                                        now.first,     now.cloud,
-                                                       bounds,        walk_,
+                                                       found,         walk_,
                                                        result,        minima};
     for (std::uint32_t k = 0; k <= parts; ++k) resolve(k);
   }

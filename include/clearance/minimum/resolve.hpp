@@ -123,15 +123,10 @@ struct resolve_body {
     minima[k] = {key_distance(key), cloud, point, evaluate(parts[k], q, key_distance(key), walk).nearest.id};
   }
 
-  /// The least of the parts' keys, if there are any: `all->best` may be a bound that no pair has reached.
-  CLEARANCE_HD distance_key robots_key() const {
-    if (bounds.part_best == nullptr) return bounds.all->best;
-    distance_key least = no_key;
-    for (std::uint32_t k = 0; k < part_count; ++k) least = bounds.part_best[k] < least ? bounds.part_best[k] : least;
-    return least;
-  }
   CLEARANCE_HD void robots() const {
-    const distance_key key = robots_key();
+    distance_key key = bounds.all->best;
+    if (bounds.bound_per_part())
+      for (std::uint32_t k = 0; k < part_count; ++k) key = bounds.part_best[k] < key ? bounds.part_best[k] : key;
     if (!mine(key)) return;
     const std::uint32_t point = key_index(key) - first;
     const auto p = scan::element_of(source, point, source[point].position);
