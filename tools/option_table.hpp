@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-// Every option of `query`, `run`, `plan` and `self`, what each needs, and what becomes of two that are given together. A test
-// goes through all pairs.
+// Every option of `query`, `run`, `plan` and `self`, what each needs, and what becomes of two that are given together.
+// A test goes through all pairs.
 
 #include <algorithm>
 #include <array>

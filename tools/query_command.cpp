@@ -165,7 +165,8 @@ int run(const query_options& asked, all_ranks* ranks) {
   report.asked = &asked;
   const asked_robot robot = load_robot(asked, report.notes);
   report.robot = &robot;
-  const auto joints = about_file(asked.robot, [&] { return named_configuration(asked, robot.description.kinematics()); });
+  const auto joints =
+      about_file(asked.robot, [&] { return named_configuration(asked, robot.description.kinematics()); });
   const std::vector<Eigen::Isometry3d> poses = placed_links(asked, robot, joints);
   asked_clouds clouds;
   clouds.load(asked, shown, report.notes);
