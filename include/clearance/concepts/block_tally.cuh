@@ -17,6 +17,7 @@ struct scan_arguments;
 /// trees. An `element` is what it makes of a point: its position, or a capsule.
 ///
 /// Law: `reach_of_part(block, part, bound)` never grows while the kernel runs; an old value only costs time.
+/// Law: parts may have different reaches only if `bounds_differ(block)`; else one test of a group of parts is for all.
 /// Law: all blocks call `hand_in`; then the last one calls `conclude` with all its threads, and `reset` with one, which
 /// prepares the next scan.
 template <class T>
