@@ -18,6 +18,8 @@ struct pair_clearance {
   std::uint32_t a = none, b = none;
   real distance = infinity, lower = 0;
   std::uint32_t sphere_a = none, sphere_b = none;
+  position at_a = {0, 0, 0}, at_b = {0, 0, 0};  ///< The nearest places of both spheres, in the world, metres.
+  vec3 normal = {0, 0, 0};                      ///< The unit vector from b to a; 0 if their centres coincide.
 };
 
 /// The least distance of all pairs, in world coordinates. `lower <= distance of the solids <= upper`. `collision`: two
@@ -25,8 +27,6 @@ struct pair_clearance {
 struct self_clearance : pair_clearance {
   clearance::state state = clearance::state::no_data;
   real upper = infinity;
-  position at_a = {0, 0, 0}, at_b = {0, 0, 0};  ///< The nearest places of both spheres, in the world, metres.
-  vec3 normal = {0, 0, 0};                      ///< The unit vector from b to a.
 };
 
 /// The least distance of all pairs, and each pair's: first those of part 0, then those of part 1 with higher ones.
@@ -96,6 +96,21 @@ struct part_before_others {
   }
 };
 
+/// Where two spheres are nearest to one another.
+inline void put_places(pair_clearance& pair, const inner_sphere& a, const Eigen::Isometry3d& at_a,
+                       const inner_sphere& b, const Eigen::Isometry3d& at_b) {
+  const auto placed_at = [](const inner_sphere& s, const Eigen::Isometry3d& at) -> Eigen::Vector3d {
+    return at * Eigen::Vector3d(s.center.x, s.center.y, s.center.z);
+  };
+  const Eigen::Vector3d from = placed_at(a, at_a), to = placed_at(b, at_b), apart = from - to;
+  const double length = apart.norm();
+  const Eigen::Vector3d way = length > 0 ? Eigen::Vector3d(apart / length) : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d on_a = from - double(a.radius) * way, on_b = to + double(b.radius) * way;
+  pair.at_a = {on_a.x(), on_a.y(), on_a.z()};
+  pair.at_b = {on_b.x(), on_b.y(), on_b.z()};
+  pair.normal = {real(way.x()), real(way.y()), real(way.z())};
+}
+
 /// All parts that others can meet. Throws std::invalid_argument if the pairs are of another robot.
 template <class On, class PartView>
 std::vector<part_before_others<On, PartView>> parts_before_others(const On& on, const model_view<PartView>& robot,
@@ -124,6 +139,15 @@ class self_query {
   self_query(const On& on, const Robot& robot, const part_pairs& pairs)
       : on_(on), parts_(view_of(robot).size()), groups_(detail::parts_before_others(on, view_of(robot), pairs)) {
     for (const group& g : groups_) asks_.emplace_back(on, g.view(), min_distance_per_part{});
+    for (const PartView& part : on.copy_out(view_of(robot).parts, parts_)) {
+      const auto placed_in_tree = on.copy_out(part.tree.primitives, part.tree.primitive_count);
+      const auto ids = on.copy_out(part.tree.ids, placed_in_tree.size());
+      std::vector<inner_sphere>& its = given_.emplace_back();
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        its.resize(std::max(its.size(), std::size_t(ids[i]) + 1));
+        its[ids[i]] = placed_in_tree[i];
+      }
+    }
     found_ = on.copy_in(std::span<const min_distance_result>(std::vector<min_distance_result>(groups_.size())));
     minima_ = on.copy_in(std::span<const part_minimum>(std::vector<part_minimum>(pairs.size())));
   }
@@ -165,6 +189,8 @@ class self_query {
         pair.lower = lower > 0 && !anywhere ? rounded_down(lower) : 0;
         pair.sphere_a = g.ids[its.point];
         pair.sphere_b = its.primitive;
+        detail::put_places(pair, given_[pair.a][pair.sphere_a], poses[pair.a], given_[pair.b][pair.sphere_b],
+                           poses[pair.b]);
       }
     }
     return all;
@@ -178,6 +204,7 @@ class self_query {
   std::size_t parts_;
   std::vector<group> groups_;
   std::deque<query<min_distance_per_part, On, PartView>> asks_;  // they stay where they are
+  std::vector<std::vector<inner_sphere>> given_;                 // each part's, by their numbers
   typename On::template buffer<min_distance_result> found_;
   typename On::template buffer<part_minimum> minima_;
   std::vector<Eigen::Isometry3d> its_poses_;

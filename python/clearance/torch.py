@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from ._core import MinDistances, MinDistancesResult, Query, joint_gradients, none
+from ._core import MinDistances, MinDistancesPerPart, MinDistancesPerPartResult, MinDistancesResult, Query, joint_gradients, none
 
 
 class _FirstOnly(torch.autograd.Function):
@@ -23,6 +23,10 @@ class _FirstOnly(torch.autograd.Function):
         raise RuntimeError("clearance: the second derivative of distances is not known")
 
 
+def _all(result):
+    return result.all if isinstance(result, MinDistancesPerPartResult) else result.of
+
+
 class _LeastDistances(torch.autograd.Function):
     @staticmethod
     def forward(context, joints, points, query, seen):
@@ -31,8 +35,9 @@ class _LeastDistances(torch.autograd.Function):
         result = query(joints=values, **given, **seen)
         context.about = query.robot, values, result, seen
         context.by = [each for each in (joints, points) if isinstance(each, torch.Tensor)]
-        distances = torch.tensor(result.of["distance"].copy()).reshape(joints.shape[:-1])
-        return distances.to(joints)
+        per_part = isinstance(result, MinDistancesPerPartResult)
+        shape = (*joints.shape[:-1], result.parts) if per_part else joints.shape[:-1]
+        return torch.tensor(_all(result)["distance"].copy()).reshape(shape).to(joints)
 
     @staticmethod
     def backward(context, upstream):
@@ -43,8 +48,10 @@ class _LeastDistances(torch.autograd.Function):
             # Without a gradient the distance does not change to first order, or is not known to.
             known = torch.nan_to_num(torch.from_numpy(rows)).to(upstream)
             by_joints = _FirstOnly.apply(known, *context.by) * upstream.unsqueeze(-1)
+            if isinstance(result, MinDistancesPerPartResult):
+                by_joints = by_joints.sum(-2)
         if context.needs_input_grad[1]:
-            of, pose, points = result.of.reshape(-1), seen.get("cloud_pose"), context.by[-1]
+            of, pose, points = _all(result).reshape(-1), seen.get("cloud_pose"), context.by[-1]
             turn = np.eye(3) if pose is None else np.asarray(pose.cpu() if isinstance(pose, torch.Tensor) else pose)[:3, :3]
             moves = (of["part"] != none) & (of["cloud"] == 0) & np.isfinite(of["distance"]) & (of["distance"] != 0)
             rows = _FirstOnly.apply(torch.from_numpy(of["normal"][moves].astype("f8") @ turn), *context.by)
@@ -55,16 +62,18 @@ class _LeastDistances(torch.autograd.Function):
         return by_joints, by_points, None, None
 
 
-def least_distances(query: Query[MinDistancesResult], joints: torch.Tensor, points: Any = None, **seen: Any) -> torch.Tensor:
+def least_distances(
+    query: Query[MinDistancesResult] | Query[MinDistancesPerPartResult], joints: torch.Tensor, points: Any = None, **seen: Any
+) -> torch.Tensor:
     """The least distance of each configuration: joints (..., joints), floating, to distances (...), metres.
 
-    query: a Query of MinDistances. points, and seen (cloud_pose, depth, clouds, base, and so on) as for the query.
-    Gradients by joints and by points are those of the nearest pair; 0 where a distance has none. Raises TypeError for
+    query: a Query of MinDistances; or of MinDistancesPerPart, for (..., parts). points, and seen (cloud_pose, depth, clouds,
+    base, and so on) as for the query. Gradients are those of the nearest pairs; 0 where a distance has none. Raises TypeError for
     another question, for joints of integers, and if another argument requires a gradient; RuntimeError for a second
     derivative.
     """
-    if not isinstance(query, Query) or not isinstance(query.question, MinDistances):
-        raise TypeError("query is a Query of MinDistances, because the distances of many configurations are asked")
+    if not isinstance(query, Query) or not isinstance(query.question, (MinDistances, MinDistancesPerPart)):
+        raise TypeError("query is a Query of MinDistances or MinDistancesPerPart, because many configurations are asked about")
     if not isinstance(joints, torch.Tensor):
         raise TypeError(f"joints is a tensor of torch, not {type(joints).__name__}")
     if not joints.is_floating_point():

@@ -334,6 +334,31 @@ def test_gradients_are_those_of_differences_and_only_of_what_was_asked(arm, arm_
     assert (clearance.joint_gradients(arm, q[0, 0], certain.nominal, base) == rows[0, 0]).all()
 
 
+def test_every_parts_gradients_are_rows_of_their_own(arm, rng):
+    points = rng.uniform(-1, 1, (60, 3)).astype("f4") + np.float32([1.5, 0, 0])
+    q, base = rng.uniform(-1, 1, (2, 3, 3)), rigid(rng)
+    ask = clearance.Query(arm, clearance.MinDistancesPerPart())
+    result, parts = ask(points, q, base=base), len(arm.links)
+    rows = clearance.joint_gradients(arm, q, result, base)
+    assert rows.shape == (2, 3, parts, 3) and np.isfinite(rows).all()
+    step = 1e-3
+    for k in range(3):
+        d = np.eye(3)[k] * step
+        ends = [ask(points, q + s * d, base=base).all["distance"].astype(float).reshape(2, 3, parts) for s in (-1, 1)]
+        assert rows[..., k] == pytest.approx((ends[1] - ends[0]) / (2 * step), abs=0.02)
+    least = clearance.Query(arm, clearance.MinDistances())(points, q, base=base)
+    at = result.all["distance"].reshape(6, parts).argmin(1)
+    assert clearance.joint_gradients(arm, q, least, base).reshape(6, 3) == pytest.approx(
+        rows.reshape(6, parts, 3)[np.arange(6), at], abs=1e-6)
+    assert clearance.joint_gradients(arm, q[1, 2], ask(points, q[1, 2], base=base), base) == pytest.approx(rows[1, 2], abs=1e-6)
+    nothing = clearance.Query(arm, clearance.MinDistancesPerPart(d_max=0.01))(points + np.float32(50), q)
+    assert np.isnan(clearance.joint_gradients(arm, q, nothing)).all()
+    with pytest.raises(ValueError, match="of other joints"):
+        clearance.joint_gradients(arm, q[::-1], result, base)
+    with pytest.raises(ValueError, match="about 6 configurations, and joints has 1"):
+        clearance.joint_gradients(arm, q[0, 0], result, base)
+
+
 # ---- far away
 
 

@@ -70,6 +70,24 @@ def test_each_pairs_distance_is_that_of_a_loop_over_all_spheres(rng, base):
             assert way / np.linalg.norm(way) == pytest.approx(r.normal, abs=2e-2)
 
 
+def test_each_pair_has_a_place_and_a_gradient(packed, rng):
+    ask = clearance.SelfQuery(packed, clearance.part_pairs(packed, SRDF))
+    for _ in range(10):
+        q, base = rng.uniform(-1.5, 1.5, 3), rigid(rng)
+        r = ask(q, base=base)
+        rows, step = clearance.joint_gradients(packed, q, r, base), 1e-4
+        assert rows.shape == (len(r.pairs), 3) and np.isfinite(rows).all()
+        way = r.pairs["at_a"] - r.pairs["at_b"]
+        assert (way * r.pairs["normal"]).sum(1) == pytest.approx(r.pairs["distance"], abs=1e-5)
+        for k in range(3):
+            ends = [ask(q + s * step * np.eye(3)[k], base=base).pairs for s in (-1, 1)]
+            same = (ends[0]["sphere_a"] == ends[1]["sphere_a"]) & (ends[0]["sphere_b"] == ends[1]["sphere_b"])
+            by = (ends[1]["distance"].astype("f8") - ends[0]["distance"]) / (2 * step)
+            assert rows[same, k] == pytest.approx(by[same], abs=0.02) and same.any()
+        with pytest.raises(ValueError, match="of other joints"):
+            clearance.joint_gradients(packed, q + 0.1, r, base)
+
+
 def test_many_configurations_are_answered_as_one_by_one(packed, rng):
     ask = clearance.SelfQuery(packed)
     q = rng.uniform(-2, 2, (3, 5, 3))

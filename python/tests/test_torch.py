@@ -63,6 +63,21 @@ def test_the_gradient_by_joints_is_that_of_differences_in_any_batch(ask, cloud, 
     assert_is_gradient(q.grad.numpy().reshape(6, 3), lambda x: weighed(ask(cloud, joints=x).of, weights), Q)
 
 
+@pytest.mark.parametrize("shape", [(), (6,), (2, 3)])
+def test_each_part_has_a_distance_and_a_gradient(arm, cloud, shape):
+    ask = clearance.Query(arm, clearance.MinDistancesPerPart())
+    given = Q.reshape(*shape, 3) if shape else Q[0]
+    parts = len(arm.links)
+    weights = np.linspace(1, 2, given.size // 3 * parts)
+    q, points = torch.tensor(given, requires_grad=True), torch.tensor(cloud, requires_grad=True)
+    d = least_distances(ask, q, points=points)
+    assert d.shape == (*shape, parts)
+    assert (d.detach().numpy().ravel() == ask(cloud, joints=given).all["distance"]).all()
+    (d * torch.tensor(weights.reshape(d.shape))).sum().backward()
+    assert_is_gradient(q.grad.numpy(), lambda x: weighed(ask(cloud, joints=x).all, weights), given)
+    assert points.grad.shape == points.shape and (points.grad != 0).any()
+
+
 def test_one_configuration_has_a_distance_without_axes(ask, cloud):
     q = torch.tensor(Q[0], requires_grad=True)
     d = least_distances(ask, q, cloud)

@@ -76,13 +76,12 @@ inline least_pair least_of(const chain_of_spheres& one, const std::vector<Eigen:
 }
 
 inline bool same_pair(const clearance::pair_clearance& x, const clearance::pair_clearance& y) {
+  const auto same = [](clearance::position p, clearance::position q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
   return x.a == y.a && x.b == y.b && x.distance == y.distance && x.lower == y.lower && x.sphere_a == y.sphere_a &&
-         x.sphere_b == y.sphere_b;
+         x.sphere_b == y.sphere_b && x.normal == y.normal && same(x.at_a, y.at_a) && same(x.at_b, y.at_b);
 }
 inline bool same_self(const clearance::self_distance_result& x, const clearance::self_distance_result& y) {
-  const auto same = [](clearance::position p, clearance::position q) { return p.x == q.x && p.y == q.y && p.z == q.z; };
-  return same_pair(x, y) && x.state == y.state && x.upper == y.upper && x.normal == y.normal && same(x.at_a, y.at_a) &&
-         same(x.at_b, y.at_b) && std::ranges::equal(x.pairs, y.pairs, same_pair);
+  return same_pair(x, y) && x.state == y.state && x.upper == y.upper && std::ranges::equal(x.pairs, y.pairs, same_pair);
 }
 
 /// The answer about a robot itself, by all pairs of spheres.
@@ -92,6 +91,17 @@ void check_itself(const chain_of_spheres& robot, const std::vector<Eigen::Isomet
   const auto sphere_of = [&](std::uint32_t link, std::uint32_t number) { return robot.links.at(link).at(number); };
   wide least = clearance::infinity, lower = clearance::infinity;
   std::size_t n = 0;
+  const auto check_places = [&](const clearance::pair_clearance& its) {
+    const Eigen::Vector3d at_a(its.at_a.x, its.at_a.y, its.at_a.z), at_b(its.at_b.x, its.at_b.y, its.at_b.z),
+        normal(its.normal.x, its.normal.y, its.normal.z);
+    v.require((at_a - at_b - double(its.distance) * normal).norm() < 1e-5, "the places are as far apart");
+    const auto off = [](const clearance::inner_sphere& s, const Eigen::Isometry3d& pose, const Eigen::Vector3d& at) {
+      return (at - pose * Eigen::Vector3d(s.center.x, s.center.y, s.center.z)).norm() - double(s.radius);
+    };
+    v.require(std::abs(off(sphere_of(its.a, its.sphere_a), poses[its.a], at_a)) < 1e-5 &&
+                  std::abs(off(sphere_of(its.b, its.sphere_b), poses[its.b], at_b)) < 1e-5,
+              "and on their spheres");
+  };
   for (std::uint32_t a = 0; a < robot.links.size(); ++a)
     for (const std::uint32_t b : pairs.above(a)) {
       const clearance::pair_clearance& its = r.pairs.at(n++);
@@ -100,6 +110,7 @@ void check_itself(const chain_of_spheres& robot, const std::vector<Eigen::Isomet
                 " apart, and not", its.distance);
       const wide named = between_links({sphere_of(a, its.sphere_a)}, poses[a], {sphere_of(b, its.sphere_b)}, poses[b]);
       v.require(std::abs(named - is) < 1e-5, "their spheres");
+      check_places(its);
       const wide certain = is - robot.gaps[a] - robot.gaps[b];
       v.require(its.lower <= std::max(certain, wide(0)) && its.lower > certain - 1e-5, "at least", its.lower,
                 " and not", certain);
@@ -110,9 +121,7 @@ void check_itself(const chain_of_spheres& robot, const std::vector<Eigen::Isomet
   v.require(std::abs(r.distance - least) < 1e-5, "the least is", least, " and not", r.distance);
   v.require(r.lower <= std::max(lower, wide(0)) && r.lower > lower - 1e-5, "at least", r.lower, " and not", lower);
   v.require(r.upper >= std::max(least, wide(0)) && r.upper < std::max(least, wide(0)) + 1e-5, "at most", r.upper);
-  const Eigen::Vector3d at_a(r.at_a.x, r.at_a.y, r.at_a.z), at_b(r.at_b.x, r.at_b.y, r.at_b.z),
-      normal(r.normal.x, r.normal.y, r.normal.z);
-  v.require((at_a - at_b - double(r.distance) * normal).norm() < 1e-5, "the places are as far apart");
+  if (n != 0) check_places(r);
 }
 
 }  // namespace testing

@@ -7,8 +7,9 @@
 
 #include <clearance/io/jacobian.hpp>
 #include <clearance/make_model.hpp>
-#include <clearance/questions/min_distance.hpp>
+#include <clearance/questions/min_distances_per_part.hpp>
 #include <clearance/questions/part_witnesses.hpp>
+#include <clearance/self_distance.hpp>
 #include <clearance/volume/sphere.hpp>
 
 namespace jacobian_test {
@@ -131,6 +132,67 @@ TEST_CASE("What has no gradient has none by joints, and what is no link or part 
   CHECK((*joint_gradient(robot, q, 0, g) - *joint_gradient(tree, poses, 3, g)).norm() == 0);
   CHECK(says(sentence<std::invalid_argument>([&] { joint_gradient(robot, q, 2, g); }), "2 parts"));
   CHECK(!joint_gradient(robot, q, clearance::none, clearance::pose_gradient{}));
+}
+
+TEST_CASE("A row for each distance says what small steps say, of witnesses and of pairs") {
+  dice d(21);
+  verdict v;
+  for (int round = 0; round < 20; ++round) {
+    const auto [tree, q] = random_tree(d, 5, 0.3);
+    struct part {
+      std::size_t link;
+    };
+    struct {
+      const kinematic_tree& tree;
+      std::vector<part> list;
+      const kinematic_tree& kinematics() const { return tree; }
+      const std::vector<part>& parts() const { return list; }
+    } robot{tree, {}};
+    std::vector<std::vector<clearance::inner_sphere>> bodies;
+    for (std::size_t k = 1; k < tree.links().size(); ++k) {
+      robot.list.push_back({k});
+      bodies.push_back({{{0.1f, 0.2f, -0.1f}, 0.05f}});
+    }
+    const auto model = clearance::make_model<clearance::sphere>(bodies);
+    const Eigen::Isometry3d base = d.pose(0.5);
+    const auto poses_at = [&](const std::vector<double>& at) {
+      const auto links = tree.link_poses(at);
+      std::vector<Eigen::Isometry3d> poses;
+      for (const part& p : robot.list) poses.push_back(base * links[p.link]);
+      return poses;
+    };
+    clearance::part_pairs pairs(robot.list.size());
+    const std::vector<clearance::vec3> points{{2, 3, 1}};
+    const auto seen = [&](const std::vector<double>& at) {
+      return clearance::ask(clearance::host{}, model, poses_at(at), points, clearance::min_distances_per_part{});
+    };
+    const auto itself = [&](const std::vector<double>& at) {
+      return clearance::self_distance(clearance::host{}, model, poses_at(at), pairs);
+    };
+    const auto parts = seen(q);
+    const auto own = itself(q);
+    const Eigen::MatrixXd of_parts = clearance::io::joint_gradients(robot, q, parts.of(0), {}, base);
+    const Eigen::MatrixXd of_pairs = clearance::io::joint_gradients(robot, q, own.pairs, {}, base);
+    v.require(std::size_t(of_parts.rows()) == robot.list.size() && std::size_t(of_pairs.rows()) == pairs.size() &&
+                  std::size_t(of_parts.cols()) == tree.size(),
+              "a row for each");
+    const double h = 1e-3;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      auto up = q, down = q;
+      up[i] += h, down[i] -= h;
+      const auto a = seen(up), b = seen(down);
+      for (std::size_t k = 0; k < robot.list.size(); ++k)
+        v.require(std::abs(of_parts(Eigen::Index(k), Eigen::Index(i)) -
+                           (double(a.all[k].distance) - double(b.all[k].distance)) / (2 * h)) < 2e-3,
+                  "part", k, ", value", i);
+      const auto c = itself(up), e = itself(down);
+      for (std::size_t k = 0; k < own.pairs.size(); ++k)
+        if (own.pairs[k].distance > -0.09f)  // their centres are apart
+          v.require(std::abs(of_pairs(Eigen::Index(k), Eigen::Index(i)) -
+                             (double(c.pairs[k].distance) - double(e.pairs[k].distance)) / (2 * h)) < 2e-2,
+                    "pair", k, ", value", i);
+    }
+  }
 }
 
 TEST_CASE("A chain of mimics has the product of their factors, and none that is no number") {

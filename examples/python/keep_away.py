@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An arm follows its task, and a moving obstacle pushes it aside: one call gives each link's distance, its lower end and its
+gradient, and a quadratic program (ProxQP, pip install proxsuite) the joint speeds nearest to the task's.
+
+Each link is a row of a control barrier function: it may approach the more slowly the nearer it is, and what a row allows for
+is how fast the obstacle comes. So no link comes nearer than the margin.
+"""
+
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+import proxsuite
+from numpy.typing import NDArray
+
+import clearance
+
+LINK = """<link name="{0}"><collision><origin xyz="0 0 0.2"/><geometry><cylinder radius="0.05" length="0.4"/></geometry>
+</collision></link>"""
+JOINT = """<joint name="{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="0 0 {3}"/>
+<axis xyz="{4}"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>"""
+ARM = ('<robot name="arm"><link name="base"/>' + LINK.format("lower") + LINK.format("upper") + LINK.format("hand") +
+       JOINT.format("shoulder", "base", "lower", 0, "0 1 0") + JOINT.format("roll", "lower", "upper", 0.4, "1 0 0") +
+       JOINT.format("elbow", "upper", "hand", 0.4, "0 1 0") + "</robot>")
+
+MARGIN, STEP, RATE, FASTEST = 0.08, 0.01, 5.0, 1.5  # metres, seconds, per second, radians per second
+APPROACH = 0.3  # metres per second: so fast the obstacle may come
+SEEN = 0.6  # metres: links that are farther away need no row
+
+
+def ball_at(centre: NDArray[np.float64], radius: float = 0.15) -> NDArray[np.float32]:
+    """The points of a ball's surface."""
+    k = np.arange(600) + 0.5
+    turn, z = np.pi * (1 + 5**0.5) * k, 1 - 2 * k / 600
+    way = np.stack([np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z], axis=1)
+    return (centre + radius * way).astype("f4")
+
+
+# [rows]
+def speeds(robot: clearance.Robot, ask: clearance.Query[clearance.MinDistancesPerPartResult], points: NDArray[np.float32],
+           q: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The joint speeds nearest to `wanted` with which each link's distance h obeys dh/dt >= -RATE (h - MARGIN)."""
+    r = ask(points, joints=q)
+    rows = clearance.joint_gradients(robot, q, r)  # (parts, joints), metres per radian
+    near = np.isfinite(rows).all(axis=1)  # the others are farther away than d_max
+    least = APPROACH - RATE * (r.all["lower"][near].astype(float) - MARGIN)
+    # [rows]
+    qp = proxsuite.proxqp.dense.QP(len(q), 0, int(near.sum()), True)
+    limit = np.full(len(q), FASTEST)
+    qp.init(np.eye(len(q)), -wanted, None, None, rows[near], least, None, -limit, limit)
+    qp.solve()
+    return qp.results.x
+
+
+def episode(robot: clearance.Robot, guarded: bool) -> tuple[float, float]:
+    """The least distance of six seconds, and how far the arm was from its task in the end."""
+    ask = clearance.Query(robot, clearance.MinDistancesPerPart(d_max=SEEN))
+    truth = clearance.Query(robot, clearance.MinDistance())
+    task, q, least = np.array([0.6, 0.0, 0.6]), np.array([0.6, 0.0, 0.6]), np.inf
+    for step in range(600):
+        # It comes from the side, stays where the arm would be, and leaves again.
+        away = 0.9 - APPROACH * STEP * min(step, 300) if step < 400 else APPROACH * STEP * (step - 400)
+        points = ball_at(np.array([0.45, 0.05 + away, 0.65]))
+        wanted = 2 * (task - q)
+        q = q + STEP * (speeds(robot, ask, points, q, wanted) if guarded else wanted)
+        r = truth(points, joints=q, ignore_limits=True)
+        least = min(least, r.distance)
+        if guarded and step % 100 == 0:
+            print(f"{step * STEP:.0f} s: {np.round(q, 2)}, {r}")
+    return float(least), float(np.abs(task - q).max())
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "arm.urdf")
+        file.write_text(ARM)
+        robot = clearance.Robot.from_urdf(str(file), model="triangles")
+    (least, left), (without, _) = episode(robot, True), episode(robot, False)
+    print(f"nearest: {least:.3f} m, and {without:.3f} m without rows; {left:.3f} rad from the task in the end")
+    return 0 if MARGIN - 0.002 < least < MARGIN + 0.1 and without < MARGIN / 2 and left < 0.05 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
