@@ -6,6 +6,8 @@ Each link is a row of a control barrier function: it may approach the more slowl
 is how fast the obstacle comes. So no link comes nearer than the margin.
 """
 
+from __future__ import annotations
+
 import pathlib
 import sys
 import tempfile
@@ -37,6 +39,16 @@ def ball_at(centre: NDArray[np.float64], radius: float = 0.15) -> NDArray[np.flo
     return (centre + radius * way).astype("f4")
 
 
+def truly(robot: clearance.Robot, points: NDArray[np.float32], q: NDArray[np.float64]) -> float:
+    """The least distance of the links' cylinders, without clearance."""
+    least = np.inf
+    for pose in robot.poses(q, ignore_limits=True):
+        x, y, z = pose[:3, :3].T @ (points.astype(float) - pose[:3, 3]).T
+        beside, beyond = np.maximum(np.hypot(x, y) - 0.05, 0), np.maximum(np.abs(z - 0.2) - 0.2, 0)
+        least = min(least, float(np.hypot(beside, beyond).min()))
+    return least
+
+
 # [rows]
 def speeds(robot: clearance.Robot, ask: clearance.Query[clearance.MinDistancesPerPartResult], points: NDArray[np.float32],
            q: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -56,7 +68,6 @@ def speeds(robot: clearance.Robot, ask: clearance.Query[clearance.MinDistancesPe
 def episode(robot: clearance.Robot, guarded: bool) -> tuple[float, float]:
     """The least distance of six seconds, and how far the arm was from its task in the end."""
     ask = clearance.Query(robot, clearance.MinDistancesPerPart(d_max=SEEN))
-    truth = clearance.Query(robot, clearance.MinDistance())
     task, q, least = np.array([0.6, 0.0, 0.6]), np.array([0.6, 0.0, 0.6]), np.inf
     for step in range(600):
         # It comes from the side, stays where the arm would be, and leaves again.
@@ -64,11 +75,11 @@ def episode(robot: clearance.Robot, guarded: bool) -> tuple[float, float]:
         points = ball_at(np.array([0.45, 0.05 + away, 0.65]))
         wanted = 2 * (task - q)
         q = q + STEP * (speeds(robot, ask, points, q, wanted) if guarded else wanted)
-        r = truth(points, joints=q, ignore_limits=True)
-        least = min(least, r.distance)
+        now = truly(robot, points, q)
+        least = min(least, now)
         if guarded and step % 100 == 0:
-            print(f"{step * STEP:.0f} s: {np.round(q, 2)}, {r}")
-    return float(least), float(np.abs(task - q).max())
+            print(f"{step * STEP:.0f} s: {np.round(q, 2)}, {now:.3f} m")
+    return least, float(np.abs(task - q).max())
 
 
 def main() -> int:
@@ -78,7 +89,7 @@ def main() -> int:
         robot = clearance.Robot.from_urdf(str(file), model="triangles")
     (least, left), (without, _) = episode(robot, True), episode(robot, False)
     print(f"nearest: {least:.3f} m, and {without:.3f} m without rows; {left:.3f} rad from the task in the end")
-    return 0 if MARGIN - 0.002 < least < MARGIN + 0.1 and without < MARGIN / 2 and left < 0.05 else 1
+    return 0 if MARGIN < least < MARGIN + 0.1 and without < MARGIN / 2 and left < 0.05 else 1
 
 
 if __name__ == "__main__":

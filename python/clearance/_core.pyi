@@ -2353,6 +2353,20 @@ class PairClearance:
         """Which sphere of part b."""
 
     @property
+    def at_a(self) -> tuple[float, float, float]:
+        """The nearest places of both spheres, in the world, metres."""
+
+    @property
+    def at_b(self) -> tuple[float, float, float]:
+        """
+        The place on sphere b that is nearest to sphere a, in the world, metres.
+        """
+
+    @property
+    def normal(self) -> tuple[float, float, float]:
+        """The unit vector from b to a; 0 if their centres coincide."""
+
+    @property
     def links(self) -> tuple[str, str] | None:
         """The names of both parts, or None."""
 
@@ -2401,14 +2415,6 @@ class SelfClearance:
         """Which sphere of part b."""
 
     @property
-    def state(self) -> State:
-        """What the bracket means for a robot that is about to move."""
-
-    @property
-    def upper(self) -> float:
-        """Metres: something certainly is this near."""
-
-    @property
     def at_a(self) -> tuple[float, float, float]:
         """The nearest places of both spheres, in the world, metres."""
 
@@ -2420,7 +2426,15 @@ class SelfClearance:
 
     @property
     def normal(self) -> tuple[float, float, float]:
-        """The unit vector from b to a."""
+        """The unit vector from b to a; 0 if their centres coincide."""
+
+    @property
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
+
+    @property
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
 
     @property
     def links(self) -> tuple[str, str] | None:
@@ -2473,14 +2487,6 @@ class SelfDistanceResult:
         """Which sphere of part b."""
 
     @property
-    def state(self) -> State:
-        """What the bracket means for a robot that is about to move."""
-
-    @property
-    def upper(self) -> float:
-        """Metres: something certainly is this near."""
-
-    @property
     def at_a(self) -> tuple[float, float, float]:
         """The nearest places of both spheres, in the world, metres."""
 
@@ -2492,7 +2498,15 @@ class SelfDistanceResult:
 
     @property
     def normal(self) -> tuple[float, float, float]:
-        """The unit vector from b to a."""
+        """The unit vector from b to a; 0 if their centres coincide."""
+
+    @property
+    def state(self) -> State:
+        """What the bracket means for a robot that is about to move."""
+
+    @property
+    def upper(self) -> float:
+        """Metres: something certainly is this near."""
 
     @property
     def pairs(self) -> NDArray[numpy.void]:
@@ -2775,5 +2789,5 @@ class SelfQuery:
 
 def joint_gradients(robot: Robot, joints: _Array | Mapping[str, float] | None, result: MinDistanceResult | MinDistancesResult, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
     """
-    How each least distance changes with the joints, (..., joints): metres per radian or metre, from its witness. joints and base are those that were asked; ValueError if not, or if result is of another robot. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
+    How each least distance changes with the joints, metres per radian or metre: (..., joints) of MinDistance and MinDistances, (..., parts, joints) of MinDistancesPerPart, (pairs, joints) of SelfQuery. joints and base are those that were asked; ValueError if not, or if result is of another robot. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
     """

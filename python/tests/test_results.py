@@ -338,7 +338,7 @@ def test_every_parts_gradients_are_rows_of_their_own(arm, rng):
     points = rng.uniform(-1, 1, (60, 3)).astype("f4") + np.float32([1.5, 0, 0])
     q, base = rng.uniform(-1, 1, (2, 3, 3)), rigid(rng)
     ask = clearance.Query(arm, clearance.MinDistancesPerPart())
-    result, parts = ask(points, q, base=base), len(arm.links)
+    result, parts = ask(points, q, base=base), len(arm)
     rows = clearance.joint_gradients(arm, q, result, base)
     assert rows.shape == (2, 3, parts, 3) and np.isfinite(rows).all()
     step = 1e-3

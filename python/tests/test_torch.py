@@ -67,7 +67,7 @@ def test_the_gradient_by_joints_is_that_of_differences_in_any_batch(ask, cloud, 
 def test_each_part_has_a_distance_and_a_gradient(arm, cloud, shape):
     ask = clearance.Query(arm, clearance.MinDistancesPerPart())
     given = Q.reshape(*shape, 3) if shape else Q[0]
-    parts = len(arm.links)
+    parts = len(arm)
     weights = np.linspace(1, 2, given.size // 3 * parts)
     q, points = torch.tensor(given, requires_grad=True), torch.tensor(cloud, requires_grad=True)
     d = least_distances(ask, q, points=points)
