@@ -8,15 +8,18 @@ is how fast the obstacle comes. So no link comes nearer than the margin.
 
 from __future__ import annotations
 
+import importlib
 import pathlib
 import sys
 import tempfile
+from typing import Any
 
 import numpy as np
-import proxsuite
 from numpy.typing import NDArray
 
 import clearance
+
+proxqp: Any = importlib.import_module("proxsuite").proxqp  # which has no types
 
 LINK = """<link name="{0}"><collision><origin xyz="0 0 0.2"/><geometry><cylinder radius="0.05" length="0.4"/></geometry>
 </collision></link>"""
@@ -58,11 +61,11 @@ def speeds(robot: clearance.Robot, ask: clearance.Query[clearance.MinDistancesPe
     near = np.isfinite(rows).all(axis=1)  # the others are farther away than d_max
     least = APPROACH - RATE * (r.all["lower"][near].astype(float) - MARGIN)
     # [rows]
-    qp = proxsuite.proxqp.dense.QP(len(q), 0, int(near.sum()), True)
+    qp = proxqp.dense.QP(len(q), 0, int(near.sum()), True)
     limit = np.full(len(q), FASTEST)
     qp.init(np.eye(len(q)), -wanted, None, None, rows[near], least, None, -limit, limit)
     qp.solve()
-    return qp.results.x
+    return np.asarray(qp.results.x, dtype=np.float64)
 
 
 def episode(robot: clearance.Robot, guarded: bool) -> tuple[float, float]:

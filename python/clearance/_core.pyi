@@ -2787,7 +2787,7 @@ class SelfQuery:
 
     def __repr__(self) -> str: ...
 
-def joint_gradients(robot: Robot, joints: _Array | Mapping[str, float] | None, result: MinDistanceResult | MinDistancesResult, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
+def joint_gradients(robot: Robot, joints: _Array | Mapping[str, float] | None, result: MinDistanceResult | MinDistancesResult | MinDistancesPerPartResult | SelfDistanceResult, base: ArrayLike | None = None, ignore_limits: bool = False, rest: bool = False) -> NDArray[numpy.float64]:
     """
     How each least distance changes with the joints, metres per radian or metre: (..., joints) of MinDistance and MinDistances, (..., parts, joints) of MinDistancesPerPart, (pairs, joints) of SelfQuery. joints and base are those that were asked; ValueError if not, or if result is of another robot. A row is NaN where there is no gradient: no witness, distance 0, or the centre of a sphere.
     """
