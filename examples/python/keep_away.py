@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An arm follows its task, and a moving obstacle pushes it aside: one call gives each link's distance, its lower end and its
+"""An arm follows its task, and a moving obstacle pushes it aside: an answer about each link gives its distance's lower end and
 gradient, and a quadratic program (ProxQP, pip install proxsuite) the joint speeds nearest to the task's.
 
-Each link is a row of a control barrier function: it may approach the more slowly the nearer it is, and what a row allows for
-is how fast the obstacle comes. So no link comes nearer than the margin.
+Each link is a row of a control barrier function: the nearer it is, the more slowly it may approach, also while the obstacle
+comes as fast as it may. So no link comes nearer than the margin.
 """
 
 from __future__ import annotations
@@ -65,6 +65,8 @@ def speeds(robot: clearance.Robot, ask: clearance.Query[clearance.MinDistancesPe
     limit = np.full(len(q), FASTEST)
     qp.init(np.eye(len(q)), -wanted, None, None, rows[near], least, None, -limit, limit)
     qp.solve()
+    if qp.results.info.status != proxqp.QPSolverOutput.PROXQP_SOLVED:
+        return np.zeros(len(q))  # no speeds obey all rows: stop
     return np.asarray(qp.results.x, dtype=np.float64)
 
 
