@@ -166,7 +166,7 @@ def mypy(folder, files):
 
 def pyright(folder, files):
     pytest.importorskip("basedpyright", reason="needs basedpyright")
-    extra = [str(package_folder())] if package_folder() else []
+    extra = [str(root / "examples" / "python" / "cell")] + ([str(package_folder())] if package_folder() else [])
     (folder / "pyrightconfig.json").write_text(json.dumps({"typeCheckingMode": "strict", "extraPaths": extra,
                                                            "include": [str(f) for f in files]}))
     return said_by(["basedpyright", "-p", str(folder), "--pythonpath", sys.executable], folder, {})
@@ -178,7 +178,7 @@ def said_by(command, folder, path):
 
 
 def examples():
-    files = sorted((root / "examples" / "python").glob("*.py"))
+    files = sorted((root / "examples" / "python").glob("*.py")) + sorted((root / "examples" / "python" / "cell").glob("*.py"))
     return [f for f in files if not f.name.startswith("fleet_")]
 
 
