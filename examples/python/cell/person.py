@@ -49,26 +49,29 @@ def ends(key: Array) -> Ends:
 
 
 class Motion:
-    """Key frames, passed at given speeds: that of the person's fastest point, metres per second."""
+    """Key frames, passed at given speeds: that of the person's fastest end of a capsule, metres per second."""
 
     def __init__(self, keys: list[Array], speeds: list[float], waits: list[float]) -> None:
-        self.keys, self.times = [keys[0]], [0.0]
+        self.names = list(ends(keys[0]))
+        places, times = [self._places(keys[0])], [0.0]
         for before, after, speed, wait in zip(keys, keys[1:], speeds, waits):
-            rows = [before + (after - before) * s for s in np.linspace(0, 1, 41)]
-            places = [np.array([p for pair in ends(row).values() for p in pair]) for row in rows]
-            for k in range(1, len(rows)):
-                fastest = float(np.linalg.norm(places[k] - places[k - 1], axis=1).max())
-                self.keys.append(rows[k])
-                self.times.append(self.times[-1] + max(fastest / speed, 1e-4))
-            self.keys.append(rows[-1])
-            self.times.append(self.times[-1] + max(wait, 1e-4))
-        self.duration = self.times[-1]
+            for share in np.linspace(0, 1, 101)[1:]:
+                places.append(self._places(before + share * (after - before)))
+                times.append(times[-1] + max(float(np.linalg.norm(places[-1] - places[-2], axis=1).max()) / speed, 1e-4))
+            places.append(places[-1])
+            times.append(times[-1] + max(wait, 1e-4))
+        self.places, self.times, self.duration = np.array(places), np.array(times), times[-1]
+
+    @staticmethod
+    def _places(key: Array) -> Array:
+        return np.array([end for pair in ends(key).values() for end in pair])
 
     def at(self, time: float) -> Ends:
-        """The capsules' ends then; before and after all, the person stands still."""
+        """The capsules' ends then, straight between two samples; before and after all, the person stands still."""
         k = int(np.clip(np.searchsorted(self.times, time), 1, len(self.times) - 1))
         share = np.clip((time - self.times[k - 1]) / (self.times[k] - self.times[k - 1]), 0, 1)
-        return ends(self.keys[k - 1] + share * (self.keys[k] - self.keys[k - 1]))
+        here = self.places[k - 1] + share * (self.places[k] - self.places[k - 1])
+        return {name: (here[2 * n], here[2 * n + 1]) for n, name in enumerate(self.names)}
 
 
 KINDS = ("walks by", "reaches in", "bends over", "lunges", "hides")
