@@ -10,7 +10,7 @@ packages_io="$packages_library libexpat1-dev nlohmann-json3-dev libstb-dev liblz
 packages_command="$packages_io libcli11-dev ninja-build"
 packages_test="$packages_command catch2 libfcl-dev python3 ccache libopenmpi-dev openmpi-bin"
 packages_all="$packages_test libbenchmark-dev"
-packages_python="$packages_io python3-dev python3-venv ninja-build libosmesa6"
+packages_python="$packages_io python3-dev python3-venv ninja-build"
 packages_aarch64="$packages_test g++-aarch64-linux-gnu qemu-user-static"
 packages_clang="clang-19 libclang-rt-19-dev clang-format-19"  # sanitizers by another compiler, and the style: scripts/test --all
 

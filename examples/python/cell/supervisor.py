@@ -180,7 +180,8 @@ class Supervisor:
         return Verdict(share, float(lower[moves].min()), float(hidden[moves].min()), float(edge[moves].min()), part)
 
     def near(self, arm: Arm, frame: Frame, images: list[clearance.Cloud], labels: NDArray[np.uint8]) -> tuple[Array, Array, Array]:
-        """How near each part certainly is at least; labels are (images, rows, columns): to what is seen, to what no camera sees, and to the images' edges. Metres."""
+        """How near each part is at least: to what is seen, to what no camera sees, and to the images' edges. Metres. labels: (images, rows,
+        columns)."""
         stated, since = self.stated, time.perf_counter()
         both = [self.legs[(frame.leg + k) % len(self.legs)] for k in (0, 1)]
 
@@ -198,6 +199,8 @@ class Supervisor:
                                         age=stated.age) for cloud in seen]
             r = arm.certain(clouds=seen, joints=frame.q, question=clearance.CertainDistance(parts))
             lower = np.array([r.of(part).lower for part in arm.robot.parts])
+            if r.state == clearance.State.no_data:
+                lower[:] = 0  # nothing is known
         else:
             lower = arm.plain(clouds=seen, joints=frame.q).all["lower"].astype(float)
         # [seen]

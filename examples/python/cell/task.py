@@ -65,7 +65,6 @@ class Task:
             self.legs += [Leg(at, above[a], False), Leg(above[a], on[a], False), Leg(on[a], above[a], True),
                           Leg(above[a], above[b], True), Leg(above[b], on[b], True), Leg(on[b], above[b], False)]
             at = above[b]
-        self.starts = above["to"]
 
     def box(self, leg: int) -> Array | None:
         """Where the box lies while the arm is on that leg of a round; None in the hand."""
